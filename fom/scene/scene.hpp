@@ -1,0 +1,114 @@
+// A scene: everything one computation needs, after parsing, in cgs units. Plain data.
+// The surface form (keys, units, ranges, defaults) is the declarative table in scene_table.cpp.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace undula {
+
+enum class Space { plane, axisymmetric };
+enum class Extent { full };
+enum class Coupling { fixed };
+enum class SolidModel { linear };
+enum class Interface { no_slip };
+enum class FlowModel { stokes, navier_stokes };
+enum class TimeScheme { bdf1, bdf2 };
+enum class OpeningCondition {
+  total_pressure,  ///< sigma n = -p n + rho/2 (u.n) u: energy-neutral, safe against in- and backflow
+  static_pressure, ///< the same on inflow only; plain traction on outflow
+};
+
+struct FluidProperties {
+  double density = 0;   ///< g/cm^3
+  double viscosity = 0; ///< g/(cm s)
+};
+
+struct SolidProperties {
+  double density = 0;      ///< g/cm^3
+  double young = 0;        ///< dyn/cm^2
+  double poisson = 0;      ///< -
+  double damping_time = 0; ///< Kelvin-Voigt: stress = C (strain + damping_time * strain rate), s
+};
+
+struct OperatingPoint {
+  double frequency = 0; ///< Hz
+  double stroke = 0;    ///< cm, amplitude Phi of the holder
+  double head = 0;      ///< dyn/cm^2, outlet pressure minus inlet pressure
+};
+
+struct MeshSizes {
+  double gap_elements = 0;    ///< elements across the narrowest clearance between solids and walls
+  double channel_size = 0;    ///< cm, in the channels
+  double membrane_size = 0;   ///< cm, of the membrane's own mesh
+  double growth = 0;          ///< increase of element size per unit distance from a gap, -
+};
+
+struct TimeSettings {
+  TimeScheme scheme = TimeScheme::bdf2;
+  int steps_per_period = 0;
+  int periods = 0;
+  double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
+};
+
+/// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them exactly):
+/// phi = viscosity + density * reference_velocity * h + density * h^2 / reference_time.
+struct StabilisationWeights {
+  double velocity_jump = 0;   ///< CIP on [grad u], times density * reference_velocity * h^2
+  double pressure_jump = 0;   ///< CIP on [grad p], times h^3 / phi
+  double divergence = 0;      ///< CIP on [div u], times phi * h
+  double ghost_viscous = 0;   ///< ghost penalty on [grad u] of cut parts, times viscosity * h
+  double ghost_inertial = 0;  ///< ghost penalty on [grad u] of cut parts, times density * h^3 / reference_time
+  double ghost_pressure = 0;  ///< ghost penalty on [grad p] of cut parts, times h^3 / phi
+  double nitsche_viscous = 0; ///< penalty viscosity / h
+  double nitsche_normal = 0;  ///< penalty phi / h on the normal component
+  double reference_velocity = 0; ///< cm/s
+  double reference_time = 0;     ///< s
+};
+
+/// Box of a training campaign.
+struct TrainingPlan {
+  double frequency_low = 0, frequency_high = 0; ///< Hz
+  double stroke_low = 0, stroke_high = 0;       ///< cm
+  double head_low = 0, head_high = 0;           ///< dyn/cm^2
+  int training_points = 0; ///< space-filling, besides the corners of the box
+  int held_out_points = 0;
+  int snapshots_per_period = 0;
+  int sampled_periods = 0;   ///< the last ones of each run
+  int velocity_modes = 0, pressure_modes = 0, displacement_modes = 0; ///< 0: by energy_tolerance
+  double energy_tolerance = 0; ///< 1 - captured energy
+  int ranks_per_run = 1;
+};
+
+struct OutputSettings {
+  int fields_every = 0;      ///< steps between field files, 0: none
+  int checkpoint_every = 0;  ///< steps between checkpoints, 0: none
+};
+
+struct Scene {
+  std::string name;
+  std::filesystem::path file;         ///< the scene file itself (absolute), empty if built in code
+  std::filesystem::path profile;      ///< pump profile (TOML); relative paths in the scene are relative to it
+  std::filesystem::path fluid_mesh;   ///< Gmsh meshes instead of a profile; both empty otherwise
+  std::vector<std::filesystem::path> solid_meshes;
+  Space space = Space::axisymmetric;
+  Extent extent = Extent::full;
+  Coupling coupling = Coupling::fixed;
+  SolidModel solid_model = SolidModel::linear;
+  Interface interface = Interface::no_slip;
+  FlowModel flow = FlowModel::navier_stokes;
+  OpeningCondition inlet = OpeningCondition::total_pressure;
+  OpeningCondition outlet = OpeningCondition::total_pressure;
+  FluidProperties fluid;
+  SolidProperties membrane;
+  double clamp_radius = 0; ///< cm; motion of the membrane is imposed for r >= clamp_radius
+  OperatingPoint operating_point;
+  MeshSizes mesh;
+  TimeSettings time;
+  StabilisationWeights stabilisation;
+  TrainingPlan training;
+  OutputSettings output;
+};
+
+} // namespace undula
