@@ -1,0 +1,69 @@
+#include "fom/scene/scene_checks.hpp"
+
+#include "base/error.hpp"
+#include "base/units.hpp"
+#include "fom/scene/scene_table.hpp"
+
+namespace undula {
+namespace {
+
+void check_geometry(const Scene& scene, const std::string& where) {
+  const bool has_meshes = !scene.fluid_mesh.empty() || !scene.solid_meshes.empty();
+  if (scene.profile.empty() == !has_meshes) {
+    throw InputError("the geometry is not stated in exactly one way",
+                     has_meshes ? "both \"geometry.profile\" and meshes" : "neither a profile nor meshes",
+                     "either \"geometry.profile\", or \"geometry.fluid_mesh\" with \"geometry.solid_meshes\"",
+                     where + ", section [geometry]");
+  }
+  if (has_meshes && scene.fluid_mesh.empty()) {
+    throw InputError("\"geometry.solid_meshes\" stands without a mesh of the fluid",
+                     "no \"geometry.fluid_mesh\"", "\"geometry.fluid_mesh\", a Gmsh file",
+                     where + ", section [geometry]");
+  }
+}
+
+void check_time(const Scene& scene, const std::string& where) {
+  if (scene.time.ramp_periods > scene.time.periods) {
+    throw InputError("the smooth start is longer than the run",
+                     "ramp_periods = " + shortest_number(scene.time.ramp_periods),
+                     "at most periods = " + std::to_string(scene.time.periods), where + ", section [time]");
+  }
+}
+
+void check_bounds(const char* quantity, double low, double high, const std::string& where) {
+  if (!(low < high)) {
+    throw InputError(std::string("the box of training has no extent in ") + quantity,
+                     "low " + shortest_number(low) + ", high " + shortest_number(high), "low < high",
+                     where + ", section [training]");
+  }
+}
+
+void check_training(const Scene& scene, const std::string& where) {
+  const TrainingPlan& plan = scene.training;
+  check_bounds("frequency (Hz)", plan.frequency_low, plan.frequency_high, where);
+  check_bounds("stroke (mm)", units::length_to_mm(plan.stroke_low), units::length_to_mm(plan.stroke_high),
+               where);
+  check_bounds("head (mmHg)", units::pressure_to_mmHg(plan.head_low), units::pressure_to_mmHg(plan.head_high),
+               where);
+  if (scene.time.steps_per_period % plan.snapshots_per_period != 0) {
+    throw InputError("snapshots do not fall on time steps",
+                     "snapshots_per_period = " + std::to_string(plan.snapshots_per_period),
+                     "a divisor of time.steps_per_period = " + std::to_string(scene.time.steps_per_period),
+                     where + ", section [training]");
+  }
+  if (plan.sampled_periods > scene.time.periods) {
+    throw InputError(
+        "more periods are sampled than computed", "sampled_periods = " + std::to_string(plan.sampled_periods),
+        "at most time.periods = " + std::to_string(scene.time.periods), where + ", section [training]");
+  }
+}
+
+} // namespace
+
+void check_consistency(const Scene& scene, const std::string& where) {
+  check_geometry(scene, where);
+  check_time(scene, where);
+  check_training(scene, where);
+}
+
+} // namespace undula

@@ -1,0 +1,90 @@
+#include "fom/scene/scene_key_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace undula {
+namespace {
+
+std::string_view leaf_of(std::string_view path) {
+  const auto dot = path.rfind('.');
+  return dot == std::string_view::npos ? path : path.substr(dot + 1);
+}
+
+/// Ends of key names that people use for units, besides those of the table.
+constexpr std::array foreign_units = {
+    "um",        "mm",       "cm",       "m",        "inch",  "us",      "ms",  "s",           "min",
+    "Hz",        "hz",       "kHz",      "rpm",      "rad_s", "Pa",      "kPa", "MPa",         "GPa",
+    "hPa",       "bar",      "mbar",     "mmHg",     "mmhg",  "psi",     "dyn", "dyn_per_cm2", "kg_per_m3",
+    "g_per_cm3", "g_cm3",    "kg_m3",    "g_per_ml", "Pa_s",  "mPa_s",   "cP",  "poise",       "centipoise",
+    "m_per_s",   "cm_per_s", "mm_per_s", "m_s",      "cm_s",  "N_per_m2"};
+
+bool is_unit(std::string_view text) {
+  return std::find(foreign_units.begin(), foreign_units.end(), text) != foreign_units.end();
+}
+
+} // namespace
+
+int edit_distance(std::string_view a, std::string_view b) {
+  std::vector<int> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) {
+    row[j] = static_cast<int>(j);
+  }
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    int diagonal = row[0];
+    row[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const int replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+const SceneKey* find_key(std::string_view path) {
+  const auto table = scene_table();
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const SceneKey& key) { return key.path == path; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+const SceneKey* same_quantity(std::string_view path) {
+  for (const SceneKey& key : scene_table()) {
+    if (key.unit.empty()) {
+      continue;
+    }
+    const std::string_view quantity =
+        std::string_view(key.path).substr(0, key.path.size() - key.unit.size() - 1);
+    if (path == quantity || (path.starts_with(quantity) && path[quantity.size()] == '_' &&
+                             is_unit(path.substr(quantity.size() + 1)))) {
+      return &key;
+    }
+  }
+  return nullptr;
+}
+
+const SceneKey& nearest_key(std::string_view path) {
+  const SceneKey* nearest = nullptr;
+  int least = std::numeric_limits<int>::max();
+  for (const SceneKey& key : scene_table()) {
+    // One more than the leaves' distance, so that a key of the section at hand is preferred.
+    const int elsewhere = edit_distance(leaf_of(path), leaf_of(key.path)) + 1;
+    const int distance = std::min(edit_distance(path, key.path), elsewhere);
+    if (distance < least) {
+      least = distance;
+      nearest = &key;
+    }
+  }
+  return *nearest;
+}
+
+bool is_section(std::string_view name) {
+  const auto table = scene_table();
+  return !name.empty() &&
+         std::any_of(table.begin(), table.end(), [&](const SceneKey& key) { return key.section() == name; });
+}
+
+} // namespace undula

@@ -1,0 +1,288 @@
+// read_scene and parse_scene: TOML nodes to fields of a scene, by the table.
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <type_traits>
+
+#include "base/error.hpp"
+#include "fom/scene/scene_checks.hpp"
+#include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_key_search.hpp"
+
+namespace undula {
+namespace {
+
+/// What a message says about the place of a node, and where its relative paths start.
+struct Origin {
+  std::string label;
+  bool has_lines = true;
+  std::filesystem::path base;
+
+  [[nodiscard]] std::string at(const toml::source_region& source) const {
+    return has_lines ? label + ":" + std::to_string(source.begin.line) : label;
+  }
+};
+
+std::string in_quotes(std::string_view text) { return '"' + std::string(text) + '"'; }
+
+/// The node as it would stand in the file, cut to one line.
+std::string seen_text(const toml::node& node) {
+  std::ostringstream stream;
+  node.visit([&](const auto& typed) { stream << typed; });
+  std::string text = stream.str();
+  for (char& c : text) {
+    c = c == '\n' ? ' ' : c;
+  }
+  constexpr std::size_t longest = 80;
+  if (text.size() > longest) {
+    text = text.substr(0, longest) + " ...";
+  }
+  return text;
+}
+
+/// Fills one scene from the file and the overrides.
+class SceneParser {
+public:
+  void read_table(const toml::table& table, const std::string& prefix, const Origin& origin) {
+    for (const auto& [key, node] : table) {
+      const std::string path = prefix + std::string(key.str());
+      const bool section = prefix.empty() && is_section(path);
+      if (section && node.is_table()) {
+        read_table(*node.as_table(), path + ".", origin);
+      } else if (section) {
+        throw InputError(in_quotes(path) + " is a section, not a value", seen_text(node),
+                         "a table, [" + path + "], with keys below it", origin.at(key.source()));
+      } else if (const SceneKey* known = find_key(path)) {
+        assign(*known, node, origin);
+        given_.insert(path);
+      } else {
+        refuse_unknown(path, path + " = " + seen_text(node), node.is_table(), origin.at(key.source()));
+      }
+    }
+  }
+
+  /// `text` is "section.key=value"; names and files may stand without quotes.
+  void read_override(const std::string& text) {
+    const Origin origin{"--set " + text, false, std::filesystem::current_path()};
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      throw InputError("an override is not of the form key=value", in_quotes(text),
+                       "for instance operating_point.head_mmHg=55", origin.label);
+    }
+    const std::string path = text.substr(0, equals);
+    const std::string value = text.substr(equals + 1);
+    const SceneKey* key = find_key(path);
+    if (key == nullptr) {
+      refuse_unknown(path, text, false, origin.label);
+    }
+    const bool is_text = std::holds_alternative<ChoiceKey>(key->value) ||
+                         std::holds_alternative<TextKey>(key->value) ||
+                         std::holds_alternative<FileKey>(key->value);
+    if (is_text && value.front() != '"' && value.front() != '\'') {
+      assign(*key, toml::value<std::string>(value), origin);
+    } else {
+      const toml::table table = parse_override_value(value, *key, origin);
+      assign(*key, *table.get("value"), origin);
+    }
+    given_.insert(path);
+  }
+
+  /// Defaults for what was left out; refuses missing keys.
+  void fill_defaults(const Origin& origin) {
+    for (const SceneKey& key : scene_table()) {
+      if (given_.contains(key.path)) {
+        continue;
+      }
+      if (key.required()) {
+        const std::string place =
+            key.section().empty() ? " before the first section" : " in section [" + key.section() + "]";
+        throw InputError("key " + in_quotes(key.path) + " (" + key.help + ") is missing", "nothing",
+                         key.leaf() + " = " + allowed_text(key), origin.label + "," + place);
+      }
+      if (const auto* real = std::get_if<RealKey>(&key.value)) {
+        real->field(scene) = *real->fallback * real->cgs_per_unit;
+      } else if (const auto* integer = std::get_if<IntegerKey>(&key.value)) {
+        integer->field(scene) = *integer->fallback;
+      } else if (const auto* choice = std::get_if<ChoiceKey>(&key.value)) {
+        choose(key, *choice, choice->fallback, "the scene table");
+      }
+    }
+  }
+
+  Scene scene;
+
+private:
+  static toml::table parse_override_value(const std::string& value, const SceneKey& key,
+                                          const Origin& origin) {
+    try {
+      // On one line, so that a value cannot bring keys of its own.
+      if (value.find_first_of("\r\n") == std::string::npos) {
+        toml::table table = toml::parse("value = " + value);
+        return table;
+      }
+    } catch (const toml::parse_error&) {
+    }
+    throw InputError("key " + in_quotes(key.path) + " has a value of the wrong type", value,
+                     allowed_text(key), origin.label);
+  }
+
+  [[noreturn]] static void refuse_unknown(const std::string& path, const std::string& seen, bool is_table,
+                                          const std::string& where) {
+    if (const SceneKey* key = same_quantity(path)) {
+      throw InputError(
+          "key " + in_quotes(path) + " does not carry the unit that scenes use for this quantity", seen,
+          in_quotes(key->path) + ", " + allowed_text(*key), where);
+    }
+    if (is_table) {
+      std::string sections;
+      for (const SceneKey& key : scene_table()) {
+        const std::string section = key.section();
+        if (!section.empty() && sections.find("[" + section + "]") == std::string::npos) {
+          sections += (sections.empty() ? "[" : ", [") + section + "]";
+        }
+      }
+      throw InputError("unknown section " + in_quotes(path), "[" + path + "]", sections, where);
+    }
+    throw InputError("unknown key " + in_quotes(path), seen,
+                     "the nearest valid key is " + in_quotes(nearest_key(path).path), where);
+  }
+
+  [[noreturn]] static void refuse_value(const SceneKey& key, const char* why, const std::string& seen,
+                                        const std::string& where) {
+    throw InputError("key " + in_quotes(key.path) + " " + why, seen, allowed_text(key), where);
+  }
+
+  void assign(const SceneKey& key, const toml::node& node, const Origin& origin) {
+    const std::string where = origin.at(node.source());
+    const auto wrong_type = [&] {
+      refuse_value(key, "has a value of the wrong type", seen_text(node), where);
+    };
+    std::visit(
+        [&](const auto& typed) {
+          using Type = std::remove_cvref_t<decltype(typed)>;
+          if constexpr (std::is_same_v<Type, RealKey>) {
+            if (!node.is_number()) {
+              wrong_type();
+            }
+            const double value = *node.value<double>();
+            if (!typed.allowed.contains(value)) { // refuses nan as well
+              refuse_value(key, "is out of range", seen_text(node), where);
+            }
+            typed.field(scene) = value * typed.cgs_per_unit;
+          } else if constexpr (std::is_same_v<Type, IntegerKey>) {
+            if (!node.is_integer()) {
+              wrong_type();
+            }
+            const auto value = *node.value<std::int64_t>();
+            if (value < typed.low || value > typed.high) {
+              refuse_value(key, "is out of range", seen_text(node), where);
+            }
+            typed.field(scene) = static_cast<int>(value);
+          } else if constexpr (std::is_same_v<Type, FileListKey>) {
+            if (!node.is_array()) {
+              wrong_type();
+            }
+            typed.field(scene).clear();
+            for (const toml::node& entry : *node.as_array()) {
+              if (!entry.is_string()) {
+                wrong_type();
+              }
+              typed.field(scene).push_back(existing_file(key, *entry.value<std::string>(), origin, where));
+            }
+          } else {
+            if (!node.is_string()) {
+              wrong_type();
+            }
+            assign_text(key, typed, *node.value<std::string>(), origin, where);
+          }
+        },
+        key.value);
+  }
+
+  template <typename Type>
+  void assign_text(const SceneKey& key, const Type& typed, const std::string& text, const Origin& origin,
+                   const std::string& where) {
+    if constexpr (std::is_same_v<Type, ChoiceKey>) {
+      choose(key, typed, text, where);
+    } else if constexpr (std::is_same_v<Type, FileKey>) {
+      typed.field(scene) = existing_file(key, text, origin, where);
+    } else {
+      if (text.empty()) {
+        refuse_value(key, "is empty", in_quotes(text), where);
+      }
+      typed.field(scene) = text;
+    }
+  }
+
+  void choose(const SceneKey& key, const ChoiceKey& choice, const std::string& text,
+              const std::string& where) {
+    for (const auto& [name, enumerator] : choice.available) {
+      if (name == text) {
+        choice.set(scene, enumerator);
+        return;
+      }
+    }
+    for (const std::string& name : choice.planned) {
+      if (name == text) {
+        refuse_value(key, "has a value that this version does not offer yet", in_quotes(text), where);
+      }
+    }
+    refuse_value(key, "has an unknown value", in_quotes(text), where);
+  }
+
+  static std::filesystem::path existing_file(const SceneKey& key, const std::string& text,
+                                             const Origin& origin, const std::string& where) {
+    const std::filesystem::path file = (origin.base / text).lexically_normal();
+    std::error_code ignored;
+    if (text.empty() || !std::filesystem::is_regular_file(file, ignored)) {
+      refuse_value(key, "names a file that does not exist", file.string(), where);
+    }
+    return file;
+  }
+
+  std::set<std::string> given_;
+};
+
+std::string file_text(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::ifstream stream(file, std::ios::binary);
+  if (!std::filesystem::is_regular_file(file, ignored) || !stream) {
+    throw InputError("the scene cannot be read", "no readable file " + in_quotes(file.string()),
+                     "a scene file (TOML), see docs/scene.md", "command line");
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view text, const std::string& origin_name, const std::filesystem::path& base,
+                  std::span<const std::string> overrides) {
+  const Origin origin{origin_name, true, std::filesystem::absolute(base)};
+  SceneParser parser;
+  try {
+    parser.read_table(toml::parse(text), "", origin);
+  } catch (const toml::parse_error& error) {
+    throw InputError("the scene is not valid TOML", std::string(error.description()),
+                     "TOML 1.0, https://toml.io", origin.at(error.source()));
+  }
+  for (const std::string& override_text : overrides) {
+    parser.read_override(override_text);
+  }
+  parser.fill_defaults(origin);
+  check_consistency(parser.scene, origin_name);
+  return parser.scene;
+}
+
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  const std::filesystem::path absolute = std::filesystem::absolute(file).lexically_normal();
+  Scene scene = parse_scene(file_text(file), file.string(), absolute.parent_path(), overrides);
+  scene.file = absolute;
+  return scene;
+}
+
+} // namespace undula

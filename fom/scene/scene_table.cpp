@@ -1,0 +1,239 @@
+#include "fom/scene/scene_table.hpp"
+
+#include <array>
+#include <limits>
+#include <type_traits>
+
+#include "base/units.hpp"
+
+namespace undula {
+namespace {
+
+constexpr double cm_per_mm = units::cm_per_mm;
+constexpr double mmHg = units::dyn_per_cm2_per_mmHg;
+constexpr bool shapes_state = true;
+constexpr bool leaves_state = false;
+
+AllowedRange from_to(double low, double high) { return {low, high, false, false}; }
+AllowedRange above_to(double low, double high) { return {low, high, true, false}; }
+AllowedRange between(double low, double high) { return {low, high, true, true}; }
+
+template <auto field>
+ChoiceKey choice(std::vector<std::pair<std::string, int>> available, std::vector<std::string> planned,
+                 std::string fallback) {
+  using Enum = std::remove_reference_t<decltype(field(std::declval<Scene&>()))>;
+  return {[](Scene& scene) { return static_cast<int>(field(scene)); },
+          [](Scene& scene, int value) { field(scene) = static_cast<Enum>(value); }, std::move(available),
+          std::move(planned), std::move(fallback)};
+}
+
+template <typename Enum>
+std::pair<std::string, int> name(const char* text, Enum value) {
+  return {text, static_cast<int>(value)};
+}
+
+// A function that returns a reference to a member of a scene.
+#define FIELD(member) [](Scene& scene) -> decltype(auto) { return (scene.member); }
+
+std::vector<SceneKey> model_keys() {
+  return {
+      {"name", "", "label of the computation, used in file names and plots", leaves_state,
+       TextKey{FIELD(name)}},
+      {"model.space", "", "space the equations are solved in", shapes_state,
+       choice<FIELD(space)>({name("axisymmetric", Space::axisymmetric), name("plane", Space::plane)},
+                            {"3d", "thin-gap"}, "axisymmetric")},
+      {"model.extent", "", "part of the pump that is computed", shapes_state,
+       choice<FIELD(extent)>({name("full", Extent::full)}, {"head", "lower"}, "full")},
+      {"model.coupling", "",
+       "geometric coupling; `fixed`: the displacement does not move the fluid domain, one cut", shapes_state,
+       choice<FIELD(coupling)>({name("fixed", Coupling::fixed)}, {"mapped", "explicit", "implicit"},
+                               "fixed")},
+      {"model.solid", "", "constitutive law of the membrane", shapes_state,
+       choice<FIELD(solid_model)>({name("linear", SolidModel::linear)},
+                                  {"saint-venant-kirchhoff", "neo-hookean"}, "linear")},
+      {"model.interface", "", "condition between fluid and solid", shapes_state,
+       choice<FIELD(interface)>({name("no-slip", Interface::no_slip)}, {"slip"}, "no-slip")},
+      {"model.flow", "", "flow equations; `stokes` leaves convection out", shapes_state,
+       choice<FIELD(flow)>(
+           {name("stokes", FlowModel::stokes), name("navier-stokes", FlowModel::navier_stokes)},
+           {"rng-k-epsilon"}, "navier-stokes")},
+      {"model.inlet", "",
+       "what the inlet prescribes; `static-pressure` leaves the dynamic term out on outflow", shapes_state,
+       choice<FIELD(inlet)>({name("total-pressure", OpeningCondition::total_pressure),
+                             name("static-pressure", OpeningCondition::static_pressure)},
+                            {}, "total-pressure")},
+      {"model.outlet", "", "what the outlet prescribes, as for the inlet", shapes_state,
+       choice<FIELD(outlet)>({name("total-pressure", OpeningCondition::total_pressure),
+                              name("static-pressure", OpeningCondition::static_pressure)},
+                             {}, "total-pressure")},
+      {"geometry.profile", "", "pump profile (TOML); a relative path starts at the scene file", shapes_state,
+       FileKey{FIELD(profile)}},
+      {"geometry.fluid_mesh", "", "Gmsh mesh of the fluid background, in place of a profile", shapes_state,
+       FileKey{FIELD(fluid_mesh)}},
+      {"geometry.solid_meshes", "", "Gmsh meshes of the solids, with `fluid_mesh`", shapes_state,
+       FileListKey{FIELD(solid_meshes)}},
+  };
+}
+
+std::vector<SceneKey> physics_keys() {
+  return {
+      {"fluid.density_g_per_cm3", "g_per_cm3", "density of the fluid", shapes_state,
+       RealKey{FIELD(fluid.density), 1, above_to(0, 100), {}}},
+      {"fluid.viscosity_poise", "poise", "dynamic viscosity of the fluid, 1 poise = 0.1 Pa s", shapes_state,
+       RealKey{FIELD(fluid.viscosity), 1, above_to(0, 1e4), {}}},
+      {"membrane.density_g_per_cm3", "g_per_cm3", "density of the membrane", shapes_state,
+       RealKey{FIELD(membrane.density), 1, above_to(0, 100), {}}},
+      {"membrane.young_dyn_per_cm2", "dyn_per_cm2", "Young's modulus, 1 dyn/cm^2 = 0.1 Pa", shapes_state,
+       RealKey{FIELD(membrane.young), 1, above_to(0, 1e14), {}}},
+      {"membrane.poisson", "", "Poisson's ratio", shapes_state,
+       RealKey{FIELD(membrane.poisson), 1, between(-1, 0.5), {}}},
+      {"membrane.damping_time_s", "s",
+       "Kelvin-Voigt damping: stress = C (strain + damping time * strain rate); loss factor 2 pi f * damping "
+       "time",
+       shapes_state, RealKey{FIELD(membrane.damping_time), 1, from_to(0, 1), {}}},
+      {"membrane.clamp_radius_mm", "mm",
+       "the motion of the membrane is imposed from this radius outwards; 0: the radius in the profile",
+       shapes_state, RealKey{FIELD(clamp_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
+      {"operating_point.frequency_Hz", "Hz", "frequency f of the actuator", shapes_state,
+       RealKey{FIELD(operating_point.frequency), 1, above_to(0, 1e5), {}}},
+      {"operating_point.stroke_mm", "mm", "amplitude of the imposed motion, stroke * sin(2 pi f t)",
+       shapes_state, RealKey{FIELD(operating_point.stroke), cm_per_mm, from_to(0, 100), {}}},
+      {"operating_point.head_mmHg", "mmHg", "outlet pressure minus inlet pressure", shapes_state,
+       RealKey{FIELD(operating_point.head), mmHg, from_to(-1e4, 1e4), {}}},
+  };
+}
+
+std::vector<SceneKey> numerics_keys() {
+  constexpr int many = std::numeric_limits<int>::max();
+  return {
+      {"mesh.gap_elements", "", "elements across the narrowest clearance between solids and walls",
+       shapes_state, RealKey{FIELD(mesh.gap_elements), 1, from_to(1, 1000), 5.0}},
+      {"mesh.channel_size_mm", "mm", "element size in the channels", shapes_state,
+       RealKey{FIELD(mesh.channel_size), cm_per_mm, above_to(0, 1e4), {}}},
+      {"mesh.membrane_size_mm", "mm", "element size of the membrane's own mesh", shapes_state,
+       RealKey{FIELD(mesh.membrane_size), cm_per_mm, above_to(0, 1e4), {}}},
+      {"mesh.growth", "", "increase of element size per unit distance from a gap", shapes_state,
+       RealKey{FIELD(mesh.growth), 1, above_to(0, 10), 0.3}},
+      {"time.scheme", "", "time stepping", shapes_state,
+       choice<FIELD(time.scheme)>({name("bdf1", TimeScheme::bdf1), name("bdf2", TimeScheme::bdf2)}, {},
+                                  "bdf2")},
+      {"time.steps_per_period", "", "time steps per period of the actuator", shapes_state,
+       IntegerKey{FIELD(time.steps_per_period), 8, 1000000, 96}},
+      {"time.periods", "", "periods to compute", leaves_state,
+       IntegerKey{FIELD(time.periods), 1, 1000000, 10}},
+      {"time.ramp_periods", "", "stroke and head rise smoothly over this many periods", shapes_state,
+       RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}},
+      {"output.fields_every", "", "steps between field files; 0: none", leaves_state,
+       IntegerKey{FIELD(output.fields_every), 0, many, 0}},
+      {"output.checkpoint_every", "", "steps between checkpoints; 0: none", leaves_state,
+       IntegerKey{FIELD(output.checkpoint_every), 0, many, 0}},
+  };
+}
+
+std::vector<SceneKey> stabilisation_keys() {
+  const auto weight = [](const char* path, const char* help, double& (*field)(Scene&), double fallback) {
+    return SceneKey{path, "", help, shapes_state, RealKey{field, 1, from_to(0, 1e6), fallback}};
+  };
+  return {
+      weight("stabilisation.velocity_jump", "jump of the velocity gradient (convection)",
+             FIELD(stabilisation.velocity_jump), 0.05),
+      weight("stabilisation.pressure_jump", "jump of the pressure gradient",
+             FIELD(stabilisation.pressure_jump), 0.05),
+      weight("stabilisation.divergence", "jump of the divergence", FIELD(stabilisation.divergence), 0.05),
+      weight("stabilisation.ghost_viscous", "ghost penalty of cut parts, viscous scale",
+             FIELD(stabilisation.ghost_viscous), 0.1),
+      weight("stabilisation.ghost_inertial", "ghost penalty of cut parts, inertial scale",
+             FIELD(stabilisation.ghost_inertial), 0.05),
+      weight("stabilisation.ghost_pressure", "ghost penalty of cut parts, pressure",
+             FIELD(stabilisation.ghost_pressure), 0.05),
+      {"stabilisation.nitsche_viscous", "", "Nitsche penalty, times viscosity / h", shapes_state,
+       RealKey{FIELD(stabilisation.nitsche_viscous), 1, above_to(0, 1e6), 20.0}},
+      weight("stabilisation.nitsche_normal", "Nitsche penalty on the normal component",
+             FIELD(stabilisation.nitsche_normal), 1.0),
+      {"stabilisation.reference_velocity_cm_per_s", "cm_per_s", "velocity that scales the weights",
+       shapes_state, RealKey{FIELD(stabilisation.reference_velocity), 1, above_to(0, 1e6), 100.0}},
+      {"stabilisation.reference_time_s", "s", "time that scales the weights", shapes_state,
+       RealKey{FIELD(stabilisation.reference_time), 1, above_to(0, 1e6), 2e-4}},
+  };
+}
+
+std::vector<SceneKey> training_keys() {
+  const auto bound = [](const char* path, const char* unit, const char* help, double& (*field)(Scene&),
+                        double cgs_per_unit, AllowedRange allowed, double fallback) {
+    return SceneKey{path, unit, help, leaves_state, RealKey{field, cgs_per_unit, allowed, fallback}};
+  };
+  const auto count = [](const char* path, const char* help, int& (*field)(Scene&), int low, int fallback) {
+    return SceneKey{path, "", help, leaves_state, IntegerKey{field, low, 100000, fallback}};
+  };
+  return {
+      bound("training.frequency_low_Hz", "Hz", "lowest frequency of the box", FIELD(training.frequency_low),
+            1, above_to(0, 1e5), 80),
+      bound("training.frequency_high_Hz", "Hz", "highest frequency of the box",
+            FIELD(training.frequency_high), 1, above_to(0, 1e5), 140),
+      bound("training.stroke_low_mm", "mm", "lowest stroke of the box", FIELD(training.stroke_low), cm_per_mm,
+            from_to(0, 100), 0.1),
+      bound("training.stroke_high_mm", "mm", "highest stroke of the box", FIELD(training.stroke_high),
+            cm_per_mm, from_to(0, 100), 0.8),
+      bound("training.head_low_mmHg", "mmHg", "lowest head of the box", FIELD(training.head_low), mmHg,
+            from_to(-1e4, 1e4), 0),
+      bound("training.head_high_mmHg", "mmHg", "highest head of the box", FIELD(training.head_high), mmHg,
+            from_to(-1e4, 1e4), 70),
+      count("training.training_points", "space-filling points, besides the corners of the box",
+            FIELD(training.training_points), 0, 16),
+      count("training.held_out_points", "points kept out of the basis to measure its error",
+            FIELD(training.held_out_points), 0, 8),
+      count("training.snapshots_per_period", "snapshots per period; divides `time.steps_per_period`",
+            FIELD(training.snapshots_per_period), 1, 24),
+      count("training.sampled_periods", "periods at the end of each run that give snapshots",
+            FIELD(training.sampled_periods), 1, 1),
+      count("training.velocity_modes", "velocity modes; 0: by `energy_tolerance`",
+            FIELD(training.velocity_modes), 0, 0),
+      count("training.pressure_modes", "pressure modes; 0: by `energy_tolerance`",
+            FIELD(training.pressure_modes), 0, 0),
+      count("training.displacement_modes", "displacement modes; 0: by `energy_tolerance`",
+            FIELD(training.displacement_modes), 0, 0),
+      bound("training.energy_tolerance", "", "energy that the modes may miss, as a part of the whole",
+            FIELD(training.energy_tolerance), 1, between(0, 1), 1e-6),
+      count("training.ranks_per_run", "MPI ranks that share one full-order run",
+            FIELD(training.ranks_per_run), 1, 1),
+  };
+}
+
+#undef FIELD
+
+} // namespace
+
+std::span<const SceneKey> scene_table() {
+  static const std::vector<SceneKey> table = [] {
+    std::vector<SceneKey> all;
+    for (auto part : {model_keys(), physics_keys(), numerics_keys(), stabilisation_keys(), training_keys()}) {
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }();
+  return table;
+}
+
+std::string section_help(const std::string& section) {
+  static const std::array<std::pair<const char*, const char*>, 10> help = {{
+      {"model", "Which equations are built. What is not chosen is not assembled."},
+      {"geometry", "Either a profile, or meshes made elsewhere."},
+      {"fluid", "Newtonian, incompressible."},
+      {"membrane", "Material of the membrane and the region that the actuator holds."},
+      {"operating_point", "What the pump is driven with."},
+      {"mesh", "Element sizes for meshes made from a profile."},
+      {"time", "The time step is the period over `steps_per_period`."},
+      {"output", "Files besides the time series and the cycle means."},
+      {"stabilisation",
+       "Weights of the stabilised cut finite elements. One set serves all operating points."},
+      {"training", "Box, sampling plan and basis of a reduced model."},
+  }};
+  for (const auto& [key, text] : help) {
+    if (section == key) {
+      return text;
+    }
+  }
+  return "";
+}
+
+} // namespace undula

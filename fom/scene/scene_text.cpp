@@ -1,0 +1,97 @@
+// Texts made from single keys of the scene table: ranges, defaults, numbers.
+#include <array>
+#include <charconv>
+#include <cstdio>
+
+#include "fom/scene/scene_table.hpp"
+
+namespace undula {
+namespace {
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <typename... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;
+
+/// For people: "0.5", "100", "1e+14".
+std::string plain(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
+} // namespace
+
+std::string SceneKey::section() const {
+  const auto dot = path.find('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+std::string SceneKey::leaf() const {
+  const auto dot = path.find('.');
+  return dot == std::string::npos ? path : path.substr(dot + 1);
+}
+
+bool SceneKey::required() const {
+  return std::visit(
+      Overloaded{[](const RealKey& key) { return !key.fallback; },
+                 [](const IntegerKey& key) { return !key.fallback; }, [](const ChoiceKey&) { return false; },
+                 [](const TextKey&) { return true; }, [](const FileKey&) { return false; },
+                 [](const FileListKey&) { return false; }},
+      value);
+}
+
+std::string allowed_text(const SceneKey& key) {
+  return std::visit(
+      Overloaded{[&](const RealKey& real) {
+                   const AllowedRange& range = real.allowed;
+                   return "a number in " + std::string(range.low_open ? "(" : "[") + plain(range.low) + ", " +
+                          plain(range.high) + (range.high_open ? ")" : "]") +
+                          (key.unit.empty() ? "" : " " + key.unit);
+                 },
+                 [](const IntegerKey& integer) {
+                   return "an integer in [" + std::to_string(integer.low) + ", " +
+                          std::to_string(integer.high) + "]";
+                 },
+                 [](const ChoiceKey& choice) {
+                   std::string text;
+                   for (const auto& [name, enumerator] : choice.available) {
+                     text += (text.empty() ? "\"" : ", \"") + name + "\"";
+                   }
+                   return (choice.available.size() == 1 ? "" : "one of ") + text;
+                 },
+                 [](const TextKey&) { return std::string("a text in quotes, not empty"); },
+                 [](const FileKey&) { return std::string("the name of an existing file, in quotes"); },
+                 [](const FileListKey&) {
+                   return std::string("a list of names of existing files, [\"a.msh\", \"b.msh\"]");
+                 }},
+      key.value);
+}
+
+std::string default_text(const SceneKey& key) {
+  return std::visit(
+      Overloaded{
+          [](const RealKey& real) { return real.fallback ? shortest_number(*real.fallback) : std::string(); },
+          [](const IntegerKey& integer) {
+            return integer.fallback ? std::to_string(*integer.fallback) : std::string();
+          },
+          [](const ChoiceKey& choice) { return "\"" + choice.fallback + "\""; },
+          [](const TextKey&) { return std::string(); }, [](const FileKey&) { return std::string(); },
+          [](const FileListKey&) { return std::string(); }},
+      key.value);
+}
+
+std::string shortest_number(double value) {
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  std::string number(text.data(), end);
+  // TOML tells floats from integers by the point or the exponent.
+  if (number.find_first_of(".e") == std::string::npos) {
+    number += ".0";
+  }
+  return number;
+}
+
+} // namespace undula
