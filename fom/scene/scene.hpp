@@ -18,6 +18,7 @@ enum class TimeScheme { bdf1, bdf2 };
 enum class OpeningCondition {
   total_pressure,  ///< sigma n = -p n + rho/2 (u.n) u: energy-neutral, safe against in- and backflow
   static_pressure, ///< the same on inflow only; plain traction on outflow
+  traction,        ///< plain traction on both; for verification, blows up on strong inflow
 };
 
 struct FluidProperties {
@@ -39,10 +40,10 @@ struct OperatingPoint {
 };
 
 struct MeshSizes {
-  double gap_elements = 0;    ///< elements across the narrowest clearance between solids and walls
-  double channel_size = 0;    ///< cm, in the channels
-  double membrane_size = 0;   ///< cm, of the membrane's own mesh
-  double growth = 0;          ///< increase of element size per unit distance from a gap, -
+  double gap_elements = 0;  ///< elements across the narrowest clearance between solids and walls
+  double channel_size = 0;  ///< cm, in the channels
+  double membrane_size = 0; ///< cm, of the membrane's own mesh
+  double growth = 0;        ///< increase of element size per unit distance from a gap, -
 };
 
 struct TimeSettings {
@@ -52,17 +53,17 @@ struct TimeSettings {
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
 };
 
-/// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them exactly):
-/// phi = viscosity + density * reference_velocity * h + density * h^2 / reference_time.
+/// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them
+/// exactly): phi = viscosity + density * reference_velocity * h + density * h^2 / reference_time.
 struct StabilisationWeights {
-  double velocity_jump = 0;   ///< CIP on [grad u], times density * reference_velocity * h^2
-  double pressure_jump = 0;   ///< CIP on [grad p], times h^3 / phi
-  double divergence = 0;      ///< CIP on [div u], times phi * h
-  double ghost_viscous = 0;   ///< ghost penalty on [grad u] of cut parts, times viscosity * h
-  double ghost_inertial = 0;  ///< ghost penalty on [grad u] of cut parts, times density * h^3 / reference_time
-  double ghost_pressure = 0;  ///< ghost penalty on [grad p] of cut parts, times h^3 / phi
-  double nitsche_viscous = 0; ///< penalty viscosity / h
-  double nitsche_normal = 0;  ///< penalty phi / h on the normal component
+  double velocity_jump = 0;  ///< CIP on [grad u], times density * reference_velocity * h^2
+  double pressure_jump = 0;  ///< CIP on [grad p], times h^3 / phi
+  double divergence = 0;     ///< CIP on [div u], times phi * h
+  double ghost_viscous = 0;  ///< ghost penalty on [grad u] of cut parts, times viscosity * h
+  double ghost_inertial = 0; ///< ghost penalty on [grad u] of cut parts, times density * h^3 / reference_time
+  double ghost_pressure = 0; ///< ghost penalty on [grad p] of cut parts, times h^3 / phi
+  double nitsche_viscous = 0;    ///< penalty viscosity / h
+  double nitsche_normal = 0;     ///< penalty phi / h on the normal component
   double reference_velocity = 0; ///< cm/s
   double reference_time = 0;     ///< s
 };
@@ -72,25 +73,25 @@ struct TrainingPlan {
   double frequency_low = 0, frequency_high = 0; ///< Hz
   double stroke_low = 0, stroke_high = 0;       ///< cm
   double head_low = 0, head_high = 0;           ///< dyn/cm^2
-  int training_points = 0; ///< space-filling, besides the corners of the box
+  int training_points = 0;                      ///< space-filling, besides the corners of the box
   int held_out_points = 0;
   int snapshots_per_period = 0;
-  int sampled_periods = 0;   ///< the last ones of each run
+  int sampled_periods = 0;                                            ///< the last ones of each run
   int velocity_modes = 0, pressure_modes = 0, displacement_modes = 0; ///< 0: by energy_tolerance
-  double energy_tolerance = 0; ///< 1 - captured energy
+  double energy_tolerance = 0;                                        ///< 1 - captured energy
   int ranks_per_run = 1;
 };
 
 struct OutputSettings {
-  int fields_every = 0;      ///< steps between field files, 0: none
-  int checkpoint_every = 0;  ///< steps between checkpoints, 0: none
+  int fields_every = 0;     ///< steps between field files, 0: none
+  int checkpoint_every = 0; ///< steps between checkpoints, 0: none
 };
 
 struct Scene {
   std::string name;
-  std::filesystem::path file;         ///< the scene file itself (absolute), empty if built in code
-  std::filesystem::path profile;      ///< pump profile (TOML); relative paths in the scene are relative to it
-  std::filesystem::path fluid_mesh;   ///< Gmsh meshes instead of a profile; both empty otherwise
+  std::filesystem::path file;       ///< the scene file itself (absolute), empty if built in code
+  std::filesystem::path profile;    ///< pump profile (TOML); relative paths in the scene are relative to it
+  std::filesystem::path fluid_mesh; ///< Gmsh meshes instead of a profile; both empty otherwise
   std::vector<std::filesystem::path> solid_meshes;
   Space space = Space::axisymmetric;
   Extent extent = Extent::full;
