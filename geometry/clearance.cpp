@@ -95,7 +95,8 @@ void check(const PumpMeshSizes& sizes) {
       throw InputError("a mesh size makes no sense", std::to_string(seen), name + " " + allowed,
                        "mesh sizes");
   };
-  require(sizes.gap_elements >= 1, "gap_elements", sizes.gap_elements, ">= 1");
+  // With fewer, edges from wall to wall could block a channel.
+  require(sizes.gap_elements >= 2, "gap_elements", sizes.gap_elements, ">= 2");
   require(sizes.channel_size > 0, "channel_size", sizes.channel_size, "> 0 cm");
   require(sizes.membrane_size > 0, "membrane_size", sizes.membrane_size, "> 0 cm");
   require(sizes.growth >= 0, "growth", sizes.growth, ">= 0");
@@ -103,21 +104,16 @@ void check(const PumpMeshSizes& sizes) {
 
 } // namespace
 
-std::vector<GapBridge> solid_gaps(const PumpProfile& profile, double widest, double spacing) {
+std::vector<GapBridge> gap_bridges(const PumpProfile& profile, double widest, double spacing) {
   const Sides sides(profile);
   std::vector<GapBridge> bridges;
-  const auto walls = sides.housing + sides.stator;
-  bridge(sides.membrane, walls + sides.magnet, widest, spacing, bridges);
-  bridge(sides.magnet, walls + sides.membrane, widest, spacing, bridges);
-  bridge(walls, sides.membrane + sides.magnet, widest, spacing, bridges);
-  return bridges;
-}
-
-std::vector<GapBridge> wall_gaps(const PumpProfile& profile, double widest, double spacing) {
-  const Sides sides(profile);
-  std::vector<GapBridge> bridges;
-  bridge(sides.housing, sides.stator, widest, spacing, bridges);
-  bridge(sides.stator, sides.housing, widest, spacing, bridges);
+  const auto over = [&](const Segments& a, const Segments& b) {
+    bridge(a, b, widest, spacing, bridges);
+    bridge(b, a, widest, spacing, bridges);
+  };
+  over(sides.membrane, sides.housing + sides.stator + sides.magnet);
+  over(sides.magnet, sides.housing + sides.stator);
+  over(sides.housing, sides.stator);
   return bridges;
 }
 
@@ -133,13 +129,10 @@ std::function<double(const Point<2>&)> pump_size_field(const PumpProfile& profil
                                                        const PumpMeshSizes& sizes) {
   check(sizes);
   // Bridges half an element apart: between two of them the field rises by growth / 4 of the size at most.
-  const auto add = [&](auto gaps, double elements, auto& sources) {
-    for (const auto& gap : gaps(profile, elements * sizes.channel_size, 0.5 / elements))
-      sources.emplace_back(gap.width() / elements, Segment{gap.from, gap.to});
-  };
   std::vector<std::pair<double, Segment>> sources; // size along a bridge, bridge
-  add(solid_gaps, sizes.gap_elements, sources);
-  add(wall_gaps, 0.5 * sizes.gap_elements, sources);
+  for (const auto& gap :
+       gap_bridges(profile, sizes.gap_elements * sizes.channel_size, 0.5 / sizes.gap_elements))
+    sources.emplace_back(gap.width() / sizes.gap_elements, Segment{gap.from, gap.to});
   std::stable_sort(sources.begin(), sources.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
 
