@@ -8,9 +8,9 @@
 
 namespace undula::rom {
 
-/// Reduced semi-discrete system. With y = [a_u; a_p; a_v] (sizes nu, np, nv; N = nu + np + nv), solid displacement
-/// coefficients a_d (same basis as a_v, d(a_d)/dt = a_v), imposed displacement D(t) and velocity V(t) = dD/dt of
-/// the holder (cm, cm/s) and head P(t) (dyn/cm^2):
+/// Reduced semi-discrete system. With y = [a_u; a_p; a_v] (sizes nu, np, nv; N = nu + np + nv), solid
+/// displacement coefficients a_d (same basis as a_v, d(a_d)/dt = a_v), imposed displacement D(t) and velocity
+/// V(t) = dD/dt of the holder (cm, cm/s) and head P(t) (dyn/cm^2):
 ///
 ///   M dy/dt + K y + [0; 0; S a_d] + [C(a_u) a_u; 0; 0] + m V'(t) + k V(t) + s D(t) + g P(t) = 0,
 ///   C(b)_ij = sum_k convection[k](i, j) b_k,  skew: a . C(b) a = 0.
@@ -21,18 +21,18 @@ struct Operators {
   int pressure_modes = 0;     ///< np
   int displacement_modes = 0; ///< nv
   Eigen::MatrixXd mass;       ///< M, N x N
-  Eigen::MatrixXd linear;     ///< K, N x N: viscosity, pressure, divergence, interface, stabilisation, damping
-  Eigen::MatrixXd stiffness;  ///< S, nv x nv
+  Eigen::MatrixXd linear;    ///< K, N x N: viscosity, pressure, divergence, interface, stabilisation, damping
+  Eigen::MatrixXd stiffness; ///< S, nv x nv
   std::vector<Eigen::MatrixXd> convection; ///< nu matrices, nu x nu
-  Eigen::VectorXd imposed_mass;      ///< m, N
-  Eigen::VectorXd imposed_linear;    ///< k, N
-  Eigen::VectorXd imposed_stiffness; ///< s, N
-  Eigen::VectorXd head;              ///< g, N
-  Eigen::VectorXd outflow;           ///< nu: flow out of the outlet = outflow . a_u, cm^3/s
-  Eigen::VectorXd inflow;            ///< nu: flow into the inlet = inflow . a_u, cm^3/s
-  Eigen::MatrixXd envelope;          ///< n_probe x nv: axial displacement at the probes = envelope a_d + imposed D
-  Eigen::VectorXd envelope_imposed;  ///< n_probe
-  Eigen::VectorXd envelope_radius;   ///< n_probe: r of the probes on the membrane's mid-plane, cm
+  Eigen::VectorXd imposed_mass;            ///< m, N
+  Eigen::VectorXd imposed_linear;          ///< k, N
+  Eigen::VectorXd imposed_stiffness;       ///< s, N
+  Eigen::VectorXd head;                    ///< g, N
+  Eigen::VectorXd outflow;                 ///< nu: flow out of the outlet = outflow . a_u, cm^3/s
+  Eigen::VectorXd inflow;                  ///< nu: flow into the inlet = inflow . a_u, cm^3/s
+  Eigen::MatrixXd envelope; ///< n_probe x nv: axial displacement at the probes = envelope a_d + imposed D
+  Eigen::VectorXd envelope_imposed; ///< n_probe
+  Eigen::VectorXd envelope_radius;  ///< n_probe: r of the probes on the membrane's mid-plane, cm
 };
 
 /// Box of trained parameters, surface units.
@@ -48,10 +48,10 @@ struct ReferencePoint {
   double flow_l_per_min = 0;        ///< mean over the last period
   double flow_spread_l_per_min = 0; ///< max - min of the last periods' means
   bool held_out = false;
-  double rom_flow_l_per_min = 0;    ///< of this model
-  double velocity_error = 0;        ///< relative L2 over a period, ROM against FOM
-  double envelope_error = 0;        ///< relative, ROM against FOM
-  double fom_seconds = 0;           ///< wall time of the run
+  double rom_flow_l_per_min = 0; ///< of this model
+  double velocity_error = 0;     ///< relative L2 over a period, ROM against FOM
+  double envelope_error = 0;     ///< relative, ROM against FOM
+  double fom_seconds = 0;        ///< wall time of the run
 };
 
 struct Model {
