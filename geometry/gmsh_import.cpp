@@ -79,12 +79,12 @@ private:
   }
 
   void add_cells() {
+    for (const auto& element : content_.elements)
+      if (gmsh_simplex_dimension(element.type) > dim)
+        fail("the mesh has a tetrahedron", "a mesh in three dimensions", "triangles", element.line);
     std::set<Cell> known;
     for (const auto& element : content_.elements) {
-      const int dimension = gmsh_simplex_dimension(element.type);
-      if (dimension > dim)
-        fail("the mesh has a tetrahedron", "a mesh in three dimensions", "triangles", element.line);
-      if (dimension != dim) continue;
+      if (gmsh_simplex_dimension(element.type) != dim) continue;
       Cell cell;
       for (int i = 0; i <= dim; ++i) cell[i] = point(element.nodes[i], element.line);
       // MSH 2.2 repeats an element for each of its physical groups.
