@@ -17,8 +17,10 @@ namespace undula::rom {
 ///
 /// cgs units with velocity coefficients in cm/s of basis vectors normalised in the energy inner product.
 struct Operators {
-  int velocity_modes = 0;     ///< nu
-  int pressure_modes = 0;     ///< np
+  int velocity_modes = 0; ///< nu, supremizers included
+  int supremizer_modes =
+      0;                  ///< the last so many of the nu; one per pressure mode, in their order, or none (0)
+  int pressure_modes = 0; ///< np
   int displacement_modes = 0; ///< nv
   Eigen::MatrixXd mass;       ///< M, N x N
   Eigen::MatrixXd linear;    ///< K, N x N: viscosity, pressure, divergence, interface, stabilisation, damping
@@ -65,12 +67,17 @@ struct Model {
   std::map<std::string, std::string> provenance; ///< scene text, version, commit, ranks, date
 };
 
-/// Keeps the first nu, np, nv modes; no re-projection is needed (the operators are nested).
+/// Keeps the first modes of each field; no re-projection is needed (the operators are nested).
+/// `velocity_modes` is without supremizers: those of the pressure modes that stay are kept on top. Throws
+/// InputError for more modes than there are.
 Operators restrict_operators(const Operators& operators, int velocity_modes, int pressure_modes,
                              int displacement_modes);
 
-/// Reads / writes a model file (HDF5). Throws InputError for a missing, truncated or foreign file.
+/// Reads a model file (HDF5). Throws InputError for a missing, truncated or foreign file, for operators of
+/// sizes that do not fit together and for numbers that are not finite.
 Model load_model(const std::string& file);
+/// Writes a model file (under a temporary name, then renamed). The keys of the provenance must not contain
+/// '/'. Throws InputError for operators of sizes that do not fit together.
 void save_model(const Model& model, const std::string& file);
 
 } // namespace undula::rom

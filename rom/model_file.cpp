@@ -21,21 +21,25 @@ class Writer {
 public:
   explicit Writer(Hdf5File& file) : file_(file) {}
 
-  void operator()(const std::string& name, const Eigen::MatrixXd& matrix, Eigen::Index, Eigen::Index,
-                  const std::string& unit) {
+  void operator()(const std::string& name, const Eigen::MatrixXd& matrix, Eigen::Index rows,
+                  Eigen::Index columns, const std::string& unit) {
+    check(name, matrix.rows() == rows && matrix.cols() == columns);
     const RowMajor values = matrix;
     file_.write(name, std::span(values.data(), extent(values.size())),
                 {extent(values.rows()), extent(values.cols())}, unit);
   }
-  void operator()(const std::string& name, const Eigen::VectorXd& vector, Eigen::Index,
+  void operator()(const std::string& name, const Eigen::VectorXd& vector, Eigen::Index size,
                   const std::string& unit) {
+    check(name, vector.size() == size);
     file_.write(name, std::span(vector.data(), extent(vector.size())), {extent(vector.size())}, unit);
   }
   void operator()(const std::string& name, const std::vector<Eigen::MatrixXd>& tensor, Eigen::Index n,
                   const std::string& unit) {
+    check(name, std::ssize(tensor) == n);
     std::vector<double> values;
     values.reserve(extent(n * n * n));
     for (const auto& slice : tensor) {
+      check(name, slice.rows() == n && slice.cols() == n);
       const RowMajor rows = slice;
       values.insert(values.end(), rows.data(), rows.data() + rows.size());
     }
@@ -43,6 +47,11 @@ public:
   }
 
 private:
+  void check(const std::string& name, bool fits) const {
+    if (!fits)
+      throw InputError("'" + name + "' does not fit the numbers of modes", "another size",
+                       "the sizes stated in rom/model.hpp", file_.path().string());
+  }
   Hdf5File& file_;
 };
 
@@ -180,6 +189,7 @@ void save_model(const Model& model, const std::string& name) {
   const auto& o = model.operators;
   file.create_group("operators");
   file.write_attribute("operators", "velocity_modes", o.velocity_modes);
+  file.write_attribute("operators", "supremizer_modes", o.supremizer_modes);
   file.write_attribute("operators", "pressure_modes", o.pressure_modes);
   file.write_attribute("operators", "displacement_modes", o.displacement_modes);
   file.write_attribute("operators", "probes", static_cast<int>(o.envelope_radius.size()));
@@ -202,8 +212,12 @@ Model load_model(const std::string& name) {
   Model model;
   auto& o = model.operators;
   o.velocity_modes = read_count(file, "operators", "velocity_modes", 1);
+  o.supremizer_modes = read_count(file, "operators", "supremizer_modes", 0);
   o.pressure_modes = read_count(file, "operators", "pressure_modes", 0);
   o.displacement_modes = read_count(file, "operators", "displacement_modes", 0);
+  if (o.supremizer_modes > o.velocity_modes)
+    throw InputError("more supremizers than velocity modes", std::to_string(o.supremizer_modes),
+                     "at most " + std::to_string(o.velocity_modes), name);
   visit_operators(Reader(file), o, read_count(file, "operators", "probes", 0));
   model.steps_per_period = file.read<int>("steps_per_period", {}).front();
   if (model.steps_per_period < 4)

@@ -124,8 +124,11 @@ PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::
   if (options_.direct && newton(force, state)) {
     state.direct = state.converged = true;
     finish(force, state);
-  } else {
+  } else if (options_.march_periods > 0) {
     march({frequency_, stroke_cm, head}, state);
+  } else {
+    state.velocity = Eigen::MatrixXd::Zero(operators_.velocity_modes, columns);
+    return state;
   }
   state.mean_outflow = operators_.outflow.dot(state.velocity.col(0));
   state.mean_inflow = operators_.inflow.dot(state.velocity.col(0));

@@ -19,7 +19,7 @@ struct PeriodicOptions {
   int newton_iterations = 12;
   int krylov_dimension = 60;
   bool direct = true;            ///< false: by the plain march at once (a check, slow)
-  int march_periods = 200;       ///< at most, where the direct way fails
+  int march_periods = 200;       ///< at most, where the direct way fails; 0: no march, converged = false
   double march_tolerance = 1e-9; ///< change from period to period at which the march counts as periodic
   int spread_periods = 5;        ///< the spread of the march is over the means of so many last periods
 };
