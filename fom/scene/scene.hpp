@@ -51,6 +51,7 @@ struct TimeSettings {
   int steps_per_period = 0;
   int periods = 0;
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
+  int factor_every = 1;    ///< steps that share one factorisation; the rest is left to GMRES
 };
 
 /// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them

@@ -22,6 +22,14 @@ void check_geometry(const Scene& scene, const std::string& where) {
   }
 }
 
+void check_clamp(const Scene& scene, const std::string& where) {
+  if (!scene.solid_meshes.empty() && scene.clamp_radius == 0) {
+    throw InputError("no profile says where the membrane is held", "clamp_radius_mm = 0",
+                     "\"membrane.clamp_radius_mm\" > 0 where the solids come as meshes",
+                     where + ", section [membrane]");
+  }
+}
+
 void check_time(const Scene& scene, const std::string& where) {
   if (scene.time.ramp_periods > scene.time.periods) {
     throw InputError("the smooth start is longer than the run",
@@ -31,9 +39,9 @@ void check_time(const Scene& scene, const std::string& where) {
 }
 
 void check_bounds(const char* quantity, double low, double high, const std::string& where) {
-  if (!(low < high)) {
-    throw InputError(std::string("the box of training has no extent in ") + quantity,
-                     "low " + shortest_number(low) + ", high " + shortest_number(high), "low < high",
+  if (low > high) {
+    throw InputError(std::string("the box of training is upside down in ") + quantity,
+                     "low " + shortest_number(low) + ", high " + shortest_number(high), "low <= high",
                      where + ", section [training]");
   }
 }
@@ -62,6 +70,7 @@ void check_training(const Scene& scene, const std::string& where) {
 
 void check_consistency(const Scene& scene, const std::string& where) {
   check_geometry(scene, where);
+  check_clamp(scene, where);
   check_time(scene, where);
   check_training(scene, where);
 }

@@ -123,6 +123,8 @@ std::vector<SceneKey> numerics_keys() {
        IntegerKey{FIELD(time.periods), 1, 1000000, 10}},
       {"time.ramp_periods", "", "stroke and head rise smoothly over this many periods", shapes_state,
        RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}},
+      {"time.factor_every", "", "steps that share one factorisation; GMRES corrects the rest", shapes_state,
+       IntegerKey{FIELD(time.factor_every), 1, 1000, 1}},
       {"output.fields_every", "", "steps between field files; 0: none", leaves_state,
        IntegerKey{FIELD(output.fields_every), 0, many, 0}},
       {"output.checkpoint_every", "", "steps between checkpoints; 0: none", leaves_state,

@@ -1,0 +1,51 @@
+// What a run reports at every step, in cgs.
+#pragma once
+
+#include "fom/time_stepper.hpp"
+
+namespace undula {
+
+/// Axial displacement along the membrane's mid-plane as a linear functional of the displacement array.
+struct MembraneProbes {
+  std::vector<double> radius; ///< cm, ascending
+  SparseMatrix axial;         ///< radius.size() x unknowns
+};
+
+/// `count` probes, evenly spaced in r over solid 0, half-way between its lower and upper skin.
+template <int dim>
+MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count);
+
+struct Observation {
+  int step = 0;
+  double time = 0;            ///< s
+  double outflow = 0;         ///< out of the outlet, cm^3/s
+  double inflow = 0;          ///< into the inlet, cm^3/s
+  double hydraulic_power = 0; ///< head times outflow, erg/s
+  EnergyTerms energy;
+  double speed_max = 0;          ///< cm/s
+  double wall_shear_max = 0;     ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0;    ///< dyn/cm^2, area mean
+  double clearance_min = 0;      ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  double tip_displacement = 0;   ///< cm, axial, innermost probe
+  double holder_displacement = 0; ///< cm, axial, outermost probe
+};
+
+/// Precomputed geometry of the observables.
+template <int dim>
+struct ObservationPlan {
+  MembraneProbes probes;
+  std::vector<int> skin_unknowns;             ///< component 0 of the skin's nodes, all solids
+  std::vector<Point<dim>> skin_positions;     ///< at rest, cm
+  std::vector<std::array<Point<dim>, dim>> walls; ///< boundary simplices with imposed velocity
+  std::vector<std::array<Point<dim>, dim>> outline; ///< all boundary simplices
+};
+
+template <int dim>
+ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe_count);
+
+/// Collective.
+template <int dim>
+Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators, const TimeStepper<dim>& stepper,
+                    const ObservationPlan<dim>& plan, const State& state);
+
+} // namespace undula

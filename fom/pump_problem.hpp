@@ -1,0 +1,27 @@
+// From a scene to the fluid-structure problem of the pump.
+#pragma once
+
+#include "fom/problem.hpp"
+#include "fom/scene/scene.hpp"
+
+namespace undula {
+
+/// Smooth start: 0 at t = 0, 1 from `duration` on, (1 - cos(pi t / duration)) / 2 between.
+double smooth_ramp(double t, double duration);
+
+/// Imposed displacement of the holder, Phi ramp(t) sin(2 pi f t), cm.
+double holder_displacement(const Scene& scene, double t);
+
+/// Pressure at the outlet, head times ramp(t), dyn/cm^2; the inlet is at zero.
+double outlet_pressure(const Scene& scene, double t);
+
+/// Meshes (from the profile, or the Gmsh files of the scene) and conditions. Solid 0 is the membrane; the others
+/// (magnet ring) move with the holder. Names of the openings: "inlet", "outlet"; every boundary other than these
+/// and "axis" is a wall. Throws InputError for bad profiles or meshes.
+FsiProblem<2> pump_problem(const Scene& scene);
+
+/// Names of the openings, as keys of Operators::openings.
+inline constexpr const char* inlet_name = "inlet";
+inline constexpr const char* outlet_name = "outlet";
+
+} // namespace undula

@@ -1,0 +1,74 @@
+#include "fom/scene/scene_reference.hpp"
+
+#include "fom/scene/scene_table.hpp"
+
+namespace undula {
+namespace {
+
+/// Bars would end the cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    escaped += c == '|' ? "\\|" : std::string(1, c);
+  }
+  return escaped;
+}
+
+std::string planned_text(const SceneKey& key) {
+  const auto* choice = std::get_if<ChoiceKey>(&key.value);
+  if (choice == nullptr || choice->planned.empty()) {
+    return "";
+  }
+  std::string names;
+  for (const std::string& name : choice->planned) {
+    names += (names.empty() ? "`" : ", `") + name + "`";
+  }
+  return " (planned, refused by this version: " + names + ")";
+}
+
+std::string default_cell(const SceneKey& key) {
+  if (key.required()) {
+    return "required";
+  }
+  const std::string text = default_text(key);
+  return text.empty() ? "none" : "`" + text + "`";
+}
+
+} // namespace
+
+std::string scene_reference() {
+  std::string page =
+      "# Scene reference\n\n"
+      "A scene is a TOML file that says everything one computation needs. This page is printed by\n"
+      "`undula check --reference` from the table that also parses, checks and documents scenes\n"
+      "(`fom/scene/scene_table.cpp`).\n\n"
+      "- Units are part of the key names. A key with another unit is refused, with the key to use instead.\n"
+      "- An unknown key is refused, with the nearest valid one and the line.\n"
+      "- Relative paths start at the scene file; in `--set` at the working directory.\n"
+      "- `--set section.key=value` overrides a key; it may be repeated. Quotes around names may be left "
+      "out.\n"
+      "- Every output records the resolved scene. Keys marked * may change when a run goes on from a "
+      "checkpoint.\n";
+  std::string section = "-";
+  for (const SceneKey& key : scene_table()) {
+    if (key.section() != section) {
+      section = key.section();
+      page += section.empty() ? "\n## Outside sections\n"
+                              : "\n## [" + section + "]\n\n" + section_help(section) + "\n";
+      page += "\n| key | accepts | default | meaning |\n|---|---|---|---|\n";
+    }
+    page += "| `" + key.leaf() + "`" + (key.shapes_state ? "" : " *") + " | " + cell(allowed_text(key)) +
+            " | " + cell(default_cell(key)) + " | " + cell(key.help + planned_text(key)) + " |\n";
+  }
+  return page;
+}
+
+std::string scene_keys_help() {
+  std::string text = "Keys for --set key=value (all of docs/scene.md: undula check --reference):\n";
+  for (const SceneKey& key : scene_table()) {
+    text += "  " + key.path + ": " + allowed_text(key) + "\n";
+  }
+  return text;
+}
+
+} // namespace undula

@@ -1,0 +1,50 @@
+#include "fom/simulation.hpp"
+
+#include "fom/pump_problem.hpp"
+
+namespace undula {
+
+std::unique_ptr<PreparedScene> prepare_scene(const Scene& scene, MPI_Comm comm, PhaseTimer& timer) {
+  auto prepared = std::make_unique<PreparedScene>();
+  FsiProblem<2> problem;
+  {
+    const auto scope = timer.measure("mesh");
+    problem = pump_problem(scene);
+  }
+  {
+    const auto scope = timer.measure("cut");
+    prepared->disc = discretise(std::move(problem), CutOptions{});
+  }
+  prepared->operators = build_operators(prepared->disc, comm, timer);
+  prepared->observation = plan_observation(prepared->disc, membrane_probe_count);
+  return prepared;
+}
+
+void set_operating_point(PreparedScene& prepared, const Scene& scene) {
+  auto& problem = prepared.disc.problem;
+  problem.boundary.at(outlet_name).pressure = [scene](double t) { return outlet_pressure(scene, t); };
+  for (auto& body : problem.solids)
+    body.imposed_displacement = [scene](const Point<2>&, double t) {
+      return Point<2>(0.0, holder_displacement(scene, t));
+    };
+}
+
+double time_step(const Scene& scene) { return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period); }
+
+void march(const PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
+           const StepCallback& on_step) {
+  TimeStepper<2> stepper(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
+                         scene.time.factor_every, timer);
+  const int last_step = scene.time.periods * scene.time.steps_per_period;
+  while (state.step < last_step) {
+    stepper.advance(state);
+    Observation seen;
+    {
+      const auto scope = timer.measure("observe");
+      seen = observe(prepared.disc, prepared.operators, stepper, prepared.observation, state);
+    }
+    on_step(state, seen);
+  }
+}
+
+} // namespace undula

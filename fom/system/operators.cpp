@@ -1,0 +1,64 @@
+#include "fom/system/operators.hpp"
+
+namespace undula {
+
+void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  if (ranks > 1)
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+}
+
+template <int dim>
+Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& disc, int part,
+                                                  const Eigen::VectorXd& x) {
+  Eigen::Matrix<double, dim, dim + 1> velocity;
+  for (int a = 0; a <= dim; ++a)
+    velocity.col(a) = x.template segment<dim>(disc.velocity_unknown(disc.fluid_nodes.part_dofs[part][a], 0));
+  return velocity;
+}
+
+template <int dim>
+Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, PhaseTimer& timer) {
+  const auto scope = timer.measure("assemble");
+  Operators<dim> operators;
+  operators.comm = comm;
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  MPI_Comm_rank(comm, &operators.rank);
+  operators.ownership = distribute_unknowns(disc, ranks);
+  const Share share{&operators.ownership.owner, operators.rank};
+
+  operators.moments = part_moments(disc, share);
+  for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
+    operators.gradients.push_back(barycentric_gradients(disc.cut.mesh, disc.cut.parts[p].cell));
+    if (share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0)))
+      operators.own_parts.push_back(static_cast<int>(p));
+  }
+  const int size = disc.unknowns();
+  Triplets mass, physical, stabilisation, damping, stiffness;
+  add_fluid_mass(disc, operators.moments, mass);
+  add_solid_mass(disc, share, mass);
+  add_fluid_viscosity_and_pressure(disc, share, physical);
+  add_fluid_stabilisation(disc, share, stabilisation);
+  add_interface(disc, share, physical, stabilisation);
+  add_solid_stiffness(disc, share, [](const SolidProperties& solid) { return solid.damping_time; }, damping);
+  add_solid_stiffness(disc, share, [](const SolidProperties&) { return 1.0; }, stiffness);
+  operators.mass = compress(size, mass);
+  operators.physical = compress(size, physical);
+  operators.stabilisation = compress(size, stabilisation);
+  operators.damping = compress(size, damping);
+  operators.stiffness = compress(size, stiffness);
+  for (const auto& [name, condition] : disc.problem.boundary)
+    if (condition.kind == BoundaryCondition<dim>::Kind::opening) {
+      auto functional = opening_functional(disc, share, name);
+      sum_over_ranks(comm, functional);
+      operators.openings.emplace(name, std::move(functional));
+    }
+  return operators;
+}
+
+template Operators<2> build_operators(const Discretisation<2>&, MPI_Comm, PhaseTimer&);
+template Eigen::Matrix<double, 2, 3> part_velocity<2>(const Discretisation<2>&, int, const Eigen::VectorXd&);
+
+} // namespace undula

@@ -1,0 +1,96 @@
+// The operators of a discretisation that never change in time, assembled once, and the convection that does.
+#pragma once
+
+#include <mpi.h>
+
+#include <map>
+#include <string>
+
+#include "base/phase_timer.hpp"
+#include "fom/assembly/forms.hpp"
+
+namespace undula {
+
+/// With x the unknowns (fluid velocity and pressure, solid velocity) and d the solid displacement,
+///   mass x' + (physical + stabilisation + damping) x + stiffness d + convection(x) x = loads.
+/// Matrices are this rank's share in natural numbering; functionals are complete on every rank.
+template <int dim>
+struct Operators {
+  MPI_Comm comm = MPI_COMM_SELF;
+  int rank = 0;
+  Ownership ownership;
+  SparseMatrix mass;
+  SparseMatrix physical;      ///< viscosity, pressure, divergence, consistent interface terms
+  SparseMatrix stabilisation; ///< interior penalty, ghost penalty, Nitsche penalty
+  SparseMatrix damping;       ///< Kelvin-Voigt: damping_time * stiffness
+  SparseMatrix stiffness;
+  PartMoments<dim> moments;
+  std::vector<int> own_parts; ///< parts of the share
+  std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part
+  std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
+};
+
+/// Collective over `comm`. Phase "assemble".
+template <int dim>
+Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, PhaseTimer& timer);
+
+/// Velocity of the vertices of a fluid part, column per vertex.
+template <int dim>
+Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& disc, int part,
+                                                  const Eigen::VectorXd& x);
+
+/// Visits every entry (row, column, value) of the convection matrix for the convecting field `b`: the skew volume
+/// term of the share, and the momentum carried through openings that ask for it (see OpeningCondition).
+/// The sequence of (row, column) does not depend on `b`.
+template <int dim, class F>
+void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators, const Eigen::VectorXd& b,
+                      F&& f);
+
+/// Sum of `values` over all ranks, in place.
+void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values);
+
+// ---------------------------------------------------------------------------------------------------------------
+
+template <int dim, class F>
+void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators, const Eigen::VectorXd& b,
+                      F&& f) {
+  const double density = disc.problem.fluid.density;
+  for (const int part : operators.own_parts) {
+    const auto& nodes = disc.fluid_nodes.part_dofs[part];
+    const auto local = part_convection<dim>(density, operators.moments[part], operators.gradients[part],
+                                            part_velocity(disc, part, b));
+    for (int i = 0; i <= dim; ++i)
+      for (int j = 0; j <= dim; ++j)
+        for (int c = 0; c < dim; ++c)
+          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+  }
+  const Measure measure = measure_of(disc.problem.space);
+  const Share share{&operators.ownership.owner, operators.rank};
+  for (const auto& piece : disc.cut.boundary) {
+    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
+    if (condition.kind != BoundaryCondition<dim>::Kind::opening ||
+        condition.opening == OpeningCondition::total_pressure)
+      continue;
+    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
+    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+    const int cell = disc.cut.parts[piece.part].cell;
+    const auto& facet = disc.cut.facets.facets[piece.facet];
+    const Point<dim> normal = -operators.gradients[piece.part].col(facet.local[0]).normalized();
+    const auto velocity = part_velocity(disc, piece.part, b);
+    Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
+    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+      const auto& x = disc.cut.boundary_quadrature.points[q];
+      const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
+      double through = normal.dot(velocity * lambda);
+      if (condition.opening == OpeningCondition::static_pressure) through = std::max(through, 0.0);
+      local += 0.5 * density * disc.cut.boundary_quadrature.weights[q] * measure(x[0]) * through * lambda *
+               lambda.transpose();
+    }
+    for (int i = 0; i <= dim; ++i)
+      for (int j = 0; j <= dim; ++j)
+        for (int c = 0; c < dim; ++c)
+          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+  }
+}
+
+} // namespace undula

@@ -1,0 +1,77 @@
+// Semi-implicit time stepping of the monolithic system by BDF1 or BDF2.
+#pragma once
+
+#include <array>
+
+#include "fom/system/linear_system.hpp"
+
+namespace undula {
+
+/// Time levels in use: x and d at the current step [0] and the one before [1]. Natural order, complete on every
+/// rank. cm/s (velocities), dyn/cm^2 (pressure), cm (displacement, at the places of the solid velocities).
+struct State {
+  int step = 0;
+  double time = 0; ///< s
+  std::array<Eigen::VectorXd, 2> x;
+  std::array<Eigen::VectorXd, 2> d;
+};
+
+/// Rest.
+template <int dim>
+State initial_state(const Discretisation<dim>& disc);
+
+/// (alpha_0 y^{n+1} + alpha_1 y^n + alpha_2 y^{n-1}) / dt approximates dy/dt at n+1.
+std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step);
+
+/// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
+///   holder + opening + body = viscous + stabilisation + damping + (mass T x, x) + (stiffness d, x).
+struct EnergyTerms {
+  double holder = 0;        ///< power of the imposed motion on the solids (reaction times velocity)
+  double boundary = 0;      ///< power of imposed fluid velocities
+  double opening = 0;       ///< power of the pressures on the openings
+  double body = 0;          ///< power of body forces
+  double viscous = 0;       ///< dissipation of the fluid (with the consistent interface terms)
+  double stabilisation = 0; ///< dissipation of the penalties
+  double damping = 0;       ///< dissipation of the solids
+  double carried = 0;       ///< kinetic energy carried through openings (static_pressure, traction)
+  double kinetic = 0;       ///< energy, erg
+  double elastic = 0;       ///< energy, erg
+};
+
+template <int dim>
+class TimeStepper {
+public:
+  TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators, TimeScheme scheme, double dt,
+              int factor_every, PhaseTimer& timer);
+
+  /// One step. Collective; throws NumericsError on every rank, leaving `state` at the last good step.
+  void advance(State& state);
+
+  /// Terms of the step that ended in `state` (state.step >= 1).
+  EnergyTerms energy(const State& state) const;
+
+  double dt() const { return dt_; }
+  LinearSystem<dim>& system() { return system_; }
+
+private:
+  Eigen::VectorXd loads(double t) const;
+  void impose(const State& state, std::array<double, 3> alpha, double t, Eigen::VectorXd& rhs) const;
+
+  const Discretisation<dim>& disc_;
+  const Operators<dim>& operators_;
+  TimeScheme scheme_;
+  double dt_;
+  PhaseTimer& timer_;
+  LinearSystem<dim> system_;
+  Eigen::VectorXd older_x_, older_d_; ///< levels n-1 of the last step, for the energy terms
+  Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step
+};
+
+/// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids, if any, are
+/// at rest under their static loads (their unknowns are displacements here). Returns the iterations taken.
+/// Throws NumericsError when `max_iterations` do not suffice.
+template <int dim>
+int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
+                 int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x);
+
+} // namespace undula
