@@ -31,19 +31,32 @@ bool adjacent(const Polytope<dim>& polytope, int a, int b, const std::vector<int
   return true;
 }
 
-// Signed excess over the boundary of the half-space, positive inside. A vertex known to lie on the hyperplane
-// needs no arithmetic.
+// For each vertex: 1 inside the half-space, 0 on its boundary, -1 outside. A vertex known to lie on the
+// hyperplane needs no arithmetic.
 template <int dim>
-Exact signed_excess(const ExactVertex<dim>& vertex, HalfSpace half_space, const HyperplaneTable<dim>& table) {
-  if (contains(vertex.planes, half_space.plane)) return Exact(0);
-  const Exact value = table[half_space.plane].excess(vertex.x);
-  return half_space.positive ? value : -value;
+std::vector<int> vertex_signs(const Polytope<dim>& polytope, HalfSpace half_space,
+                              const HyperplaneTable<dim>& table) {
+  const auto& plane = table[half_space.plane];
+  std::vector<int> signs;
+  for (const auto& vertex : polytope.vertices) {
+    const int side = contains(vertex.planes, half_space.plane) ? 0 : static_cast<int>(plane.side(vertex.x));
+    signs.push_back(half_space.positive ? side : -side);
+  }
+  return signs;
 }
 
-double rounded(const Exact& x, double tolerance) {
-  const auto bounds = x.approx();
-  if (bounds.sup() - bounds.inf() <= tolerance) return (bounds.inf() + bounds.sup()) / 2;
-  return CGAL::to_double(x.exact());
+bool any_positive(const std::vector<int>& signs) { return *std::max_element(signs.begin(), signs.end()) > 0; }
+bool any_negative(const std::vector<int>& signs) { return *std::min_element(signs.begin(), signs.end()) < 0; }
+
+// Where the edge between two vertices on different sides of a hyperplane meets it.
+template <int dim>
+ExactPoint<dim> crossing(const ExactPoint<dim>& a, const ExactPoint<dim>& b, const Hyperplane<dim>& plane) {
+  const Exact excess_a = plane.excess(a);
+  const Exact excess_b = plane.excess(b);
+  const Exact length = excess_a - excess_b;
+  ExactPoint<dim> x;
+  for (int i = 0; i < dim; ++i) x[i] = (excess_a * b[i] - excess_b * a[i]) / length;
+  return x;
 }
 
 // Fan triangulation of a k-dimensional face given by its vertices, as lists of k + 1 vertices: cones from the
@@ -92,16 +105,7 @@ Polytope<dim> cell_polytope(const HyperplaneTable<dim>& table, int mesh, int cel
 template <int dim>
 Halves<dim> split(const Polytope<dim>& polytope, HalfSpace half_space, const HyperplaneTable<dim>& table) {
   const int n = static_cast<int>(polytope.vertices.size());
-  std::vector<Exact> excess;
-  std::vector<int> sign;
-  bool any_positive = false;
-  bool any_negative = false;
-  for (const auto& vertex : polytope.vertices) {
-    excess.push_back(signed_excess(vertex, half_space, table));
-    sign.push_back(static_cast<int>(CGAL::sign(excess.back())));
-    any_positive |= sign.back() > 0;
-    any_negative |= sign.back() < 0;
-  }
+  const auto sign = vertex_signs(polytope, half_space, table);
   Polytope<dim> inside{{}, polytope.sides};
   Polytope<dim> outside{{}, polytope.sides};
   inside.sides.push_back(half_space);
@@ -112,24 +116,18 @@ Halves<dim> split(const Polytope<dim>& polytope, HalfSpace half_space, const Hyp
     if (sign[v] <= 0) outside.vertices.push_back(vertex);
     if (sign[v] >= 0) inside.vertices.push_back(std::move(vertex));
   }
-  if (!any_negative) return {std::move(inside), std::nullopt};
-  if (!any_positive) return {std::nullopt, std::move(outside)};
+  if (!any_negative(sign)) return {std::move(inside), std::nullopt};
+  if (!any_positive(sign)) return {std::nullopt, std::move(outside)};
 
   for (int a = 0; a < n; ++a) {
-    if (sign[a] <= 0) continue;
-    for (int b = 0; b < n; ++b) {
-      if (sign[b] >= 0) continue;
+    for (int b = a + 1; b < n; ++b) {
+      if (sign[a] * sign[b] >= 0) continue;
       auto shared = shared_planes(polytope.vertices[a], polytope.vertices[b]);
       if (!adjacent(polytope, a, b, shared)) continue;
-      ExactVertex<dim> vertex;
-      const Exact length = excess[a] - excess[b];
-      for (int i = 0; i < dim; ++i)
-        vertex.x[i] =
-            (excess[a] * polytope.vertices[b].x[i] - excess[b] * polytope.vertices[a].x[i]) / length;
-      vertex.planes = std::move(shared);
-      vertex.planes.push_back(half_space.plane);
-      inside.vertices.push_back(vertex);
-      outside.vertices.push_back(std::move(vertex));
+      shared.push_back(half_space.plane);
+      const auto x = crossing<dim>(polytope.vertices[a].x, polytope.vertices[b].x, table[half_space.plane]);
+      inside.vertices.push_back({x, shared});
+      outside.vertices.push_back({x, std::move(shared)});
     }
   }
   return {std::move(inside), std::move(outside)};
@@ -142,18 +140,16 @@ std::vector<Polytope<dim>> subtract(const Polytope<dim>& polytope,
                                     std::optional<Polytope<dim>>* removed) {
   // A polytope that touches the simplex along a facet lies outside one of its half-spaces, and must remember
   // which.
+  for (const auto& half_space : half_spaces)
+    if (const auto sign = vertex_signs(polytope, half_space, table);
+        any_negative(sign) && !any_positive(sign))
+      return {std::move(*split(polytope, half_space, table).outside)};
+
   std::vector<Polytope<dim>> pieces;
   Polytope<dim> rest = polytope;
   for (const auto& half_space : half_spaces) {
     Halves<dim> halves = split(rest, half_space, table);
-    if (!halves.inside) {
-      if (pieces.empty()) return {std::move(*halves.outside)};
-      for (const auto& other : half_spaces) {
-        Halves<dim> whole = split(polytope, other, table);
-        if (!whole.inside) return {std::move(*whole.outside)};
-      }
-      return {polytope};
-    }
+    if (!halves.inside) return {polytope};
     if (halves.outside) pieces.push_back(std::move(*halves.outside));
     rest = std::move(*halves.inside);
   }
@@ -188,13 +184,13 @@ std::optional<Polytope<dim>> intersect(Polytope<dim> polytope, std::span<const H
 }
 
 template <int dim, int k>
-std::vector<std::array<Point<dim>, k + 1>> triangulate(const Polytope<dim>& polytope, double tolerance) {
+std::vector<std::array<Point<dim>, k + 1>> triangulate(const Polytope<dim>& polytope) {
   std::vector<Point<dim>> points;
   std::vector<int> all;
   for (const auto& vertex : polytope.vertices) {
     all.push_back(static_cast<int>(points.size()));
-    for (auto& x = points.emplace_back(); const int i : {0, 1, 2})
-      if (i < dim) x[i] = rounded(vertex.x[i], tolerance);
+    auto& x = points.emplace_back();
+    for (int i = 0; i < dim; ++i) x[i] = CGAL::to_double(vertex.x[i].exact());
   }
   std::vector<int> apexes;
   std::vector<std::vector<int>> index_lists;
@@ -218,18 +214,18 @@ Box<dim> bounding_box(const Polytope<dim>& polytope) {
   return box;
 }
 
-#define UNDULA_INSTANTIATE(dim)                                                                              \
-  template Polytope<dim> cell_polytope<dim>(const HyperplaneTable<dim>&, int, int);                          \
-  template Halves<dim> split<dim>(const Polytope<dim>&, HalfSpace, const HyperplaneTable<dim>&);             \
-  template std::vector<Polytope<dim>> subtract<dim>(                                                         \
-      const Polytope<dim>&, const std::array<HalfSpace, dim + 1>&, const HyperplaneTable<dim>&,              \
-      std::optional<Polytope<dim>>*);                                                                        \
-  template std::optional<Polytope<dim>> facet_in<dim>(const Polytope<dim>&, int);                            \
-  template std::optional<Polytope<dim>> intersect<dim>(Polytope<dim>, std::span<const HalfSpace>,            \
-                                                       const HyperplaneTable<dim>&);                         \
-  template Box<dim> bounding_box<dim>(const Polytope<dim>&);                                                 \
-  template std::vector<std::array<Point<dim>, dim>> triangulate<dim, dim - 1>(const Polytope<dim>&, double); \
-  template std::vector<std::array<Point<dim>, dim + 1>> triangulate<dim, dim>(const Polytope<dim>&, double);
+#define UNDULA_INSTANTIATE(dim)                                                                      \
+  template Polytope<dim> cell_polytope<dim>(const HyperplaneTable<dim>&, int, int);                  \
+  template Halves<dim> split<dim>(const Polytope<dim>&, HalfSpace, const HyperplaneTable<dim>&);     \
+  template std::vector<Polytope<dim>> subtract<dim>(                                                 \
+      const Polytope<dim>&, const std::array<HalfSpace, dim + 1>&, const HyperplaneTable<dim>&,      \
+      std::optional<Polytope<dim>>*);                                                                \
+  template std::optional<Polytope<dim>> facet_in<dim>(const Polytope<dim>&, int);                    \
+  template std::optional<Polytope<dim>> intersect<dim>(Polytope<dim>, std::span<const HalfSpace>,    \
+                                                       const HyperplaneTable<dim>&);                 \
+  template Box<dim> bounding_box<dim>(const Polytope<dim>&);                                         \
+  template std::vector<std::array<Point<dim>, dim>> triangulate<dim, dim - 1>(const Polytope<dim>&); \
+  template std::vector<std::array<Point<dim>, dim + 1>> triangulate<dim, dim>(const Polytope<dim>&);
 UNDULA_INSTANTIATE(2)
 UNDULA_INSTANTIATE(3)
 #undef UNDULA_INSTANTIATE

@@ -61,10 +61,10 @@ template <int dim>
 std::optional<Polytope<dim>> intersect(Polytope<dim> polytope, std::span<const HalfSpace> half_spaces,
                                        const HyperplaneTable<dim>& table);
 
-/// Simplices of dimension k (that of the polytope) which fill it, with coordinates rounded to double: within
-/// `tolerance` (cm) of the exact ones.
+/// Simplices of dimension k (that of the polytope) which fill it. Coordinates are rounded from their exact
+/// values, so that a point has the same coordinates in every polytope and whatever was computed before.
 template <int dim, int k>
-std::vector<std::array<Point<dim>, k + 1>> triangulate(const Polytope<dim>& polytope, double tolerance);
+std::vector<std::array<Point<dim>, k + 1>> triangulate(const Polytope<dim>& polytope);
 
 /// Box that contains the polytope, rounded outwards.
 template <int dim>

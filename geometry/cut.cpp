@@ -12,8 +12,7 @@
 namespace undula {
 namespace {
 
-constexpr double closure_tolerance = 1e-10;  // relative, beyond it an element has failed
-constexpr double rounding_tolerance = 1e-14; // of exact coordinates to double, relative to the cell
+constexpr double closure_tolerance = 1e-10; // relative, beyond it an element has failed
 
 template <int dim>
 class Cutter {
@@ -86,8 +85,6 @@ private:
     return boxes;
   }
 
-  double tolerance(int cell) const { return rounding_tolerance * cell_diameter(cut_.mesh, cell); }
-
   void add_parts(int cell) {
     std::vector<SolidCell> near;
     for (const int i : grid_.touching(cell_box(cut_.mesh, cell))) near.push_back(all_solid_cells_[i]);
@@ -120,7 +117,7 @@ private:
     record.quadrature_begin = static_cast<int>(quadrature.weights.size());
     for (std::size_t i = 0; i < shape.pieces.size(); ++i)
       if (shape.part_of_piece[i] == part)
-        for (const auto& simplex : triangulate<dim, dim>(shape.pieces[i], tolerance(record.cell)))
+        for (const auto& simplex : triangulate<dim, dim>(shape.pieces[i]))
           append_simplex_quadrature<dim, dim>(volume_rule_, simplex, quadrature);
     record.quadrature_end = static_cast<int>(quadrature.weights.size());
     record.measure =
@@ -145,24 +142,24 @@ private:
       record.normal =
           barycentric_gradients(table_.mesh(mesh), facet.cells[0]).col(facet.local[0]).normalized();
       std::tie(record.quadrature_begin, record.quadrature_end) =
-          add_facet_quadrature({*contact}, cut_.parts[part].cell, interface_rule_, cut_.interface_quadrature);
+          add_facet_quadrature({*contact}, interface_rule_, cut_.interface_quadrature);
       cut_.interface.push_back(record);
     }
   }
 
-  std::pair<int, int> add_facet_quadrature(const std::vector<Polytope<dim>>& shapes, int cell,
+  std::pair<int, int> add_facet_quadrature(const std::vector<Polytope<dim>>& shapes,
                                            const ReferenceRule<dim - 1>& rule,
                                            QuadratureSet<dim>& set) const {
     const int begin = static_cast<int>(set.weights.size());
     for (const auto& shape : shapes)
-      for (const auto& simplex : triangulate<dim, dim - 1>(shape, tolerance(cell)))
+      for (const auto& simplex : triangulate<dim, dim - 1>(shape))
         append_simplex_quadrature<dim, dim - 1>(rule, simplex, set);
     return {begin, static_cast<int>(set.weights.size())};
   }
 
-  double measure_of(const Polytope<dim>& shape, int cell) const {
+  double measure_of(const Polytope<dim>& shape) const {
     QuadratureSet<dim> set;
-    add_facet_quadrature({shape}, cell, boundary_rule_, set);
+    add_facet_quadrature({shape}, boundary_rule_, set);
     return std::accumulate(set.weights.begin(), set.weights.end(), 0.0);
   }
 
@@ -199,16 +196,14 @@ private:
       append_simplex_quadrature<dim, dim - 1>(boundary_rule_, facet_points(index), set);
       add(first_part[0], first_part[1], std::accumulate(set.weights.begin(), set.weights.end(), 0.0));
     } else if (!sides[0]) {
-      for (const auto& trace : *sides[1])
-        add(first_part[0], trace.part, measure_of(trace.shape, facet.cells[1]));
+      for (const auto& trace : *sides[1]) add(first_part[0], trace.part, measure_of(trace.shape));
     } else if (!sides[1]) {
-      for (const auto& trace : *sides[0])
-        add(trace.part, first_part[1], measure_of(trace.shape, facet.cells[0]));
+      for (const auto& trace : *sides[0]) add(trace.part, first_part[1], measure_of(trace.shape));
     } else {
       for (const auto& a : *sides[0])
         for (const auto& b : *sides[1])
           if (const auto shared = intersect<dim>(a.shape, b.shape.sides, table_))
-            add(a.part, b.part, measure_of(*shared, facet.cells[0]));
+            add(a.part, b.part, measure_of(*shared));
     }
   }
 
@@ -225,7 +220,7 @@ private:
         std::vector<Polytope<dim>> wet;
         for (const auto& trace : near.traces[facet.local[0]])
           if (trace.part == part) wet.push_back(trace.shape);
-        add_facet_quadrature(uncovered(std::move(wet), near), cell, boundary_rule_, quadrature);
+        add_facet_quadrature(uncovered(std::move(wet), near), boundary_rule_, quadrature);
       }
       piece.quadrature_end = static_cast<int>(quadrature.weights.size());
       if (piece.quadrature_end > piece.quadrature_begin) cut_.boundary.push_back(piece);
@@ -251,7 +246,7 @@ private:
     for (std::size_t part = first; part < cut_.parts.size(); ++part) sum += cut_.parts[part].measure;
     QuadratureSet<dim> solid;
     for (const auto& removed : shape.removed)
-      for (const auto& simplex : triangulate<dim, dim>(removed, tolerance(near.cell)))
+      for (const auto& simplex : triangulate<dim, dim>(removed))
         append_simplex_quadrature<dim, dim>(volume_rule_, simplex, solid);
     sum = std::accumulate(solid.weights.begin(), solid.weights.end(), sum);
     if (!(std::abs(sum - element) <= closure_tolerance * element))

@@ -70,7 +70,7 @@ Hyperplane<dim> HyperplaneTable<dim>::make(int mesh, const Facet<dim>& facet) co
 
   for (int k = 0; k < 2 && facet.cells[k] >= 0; ++k) {
     const int opposite = meshes_[mesh]->cells[facet.cells[k]][facet.local[k]];
-    const auto sign = CGAL::sign(plane.excess(exact_point<dim>(points[opposite])));
+    const auto sign = plane.side(exact_point<dim>(points[opposite]));
     if (k == 0 && sign == CGAL::NEGATIVE) {
       for (auto& component : plane.normal) component = -component;
       plane.offset = -plane.offset;

@@ -39,6 +39,17 @@ struct Hyperplane {
     for (int i = 0; i < dim; ++i) value += normal[i] * x[i];
     return value;
   }
+
+  /// Sign of the excess. Most signs are decided here, on intervals, without recording operations for later.
+  CGAL::Sign side(const ExactPoint<dim>& x) const {
+    {
+      const CGAL::Protect_FPU_rounding<true> upward;
+      CGAL::Interval_nt<false> value = -offset.approx();
+      for (int i = 0; i < dim; ++i) value += normal[i].approx() * x[i].approx();
+      if (const auto sign = CGAL::sign(value); CGAL::is_certain(sign)) return CGAL::get_certain(sign);
+    }
+    return CGAL::sign(excess(x));
+  }
 };
 
 /// The closed side of a hyperplane that its normal points to (`positive`), or the other.

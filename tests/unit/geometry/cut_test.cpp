@@ -84,7 +84,7 @@ TEST(Cut, RandomBodies) {
   const Mesh body = box_mesh(-0.4, -0.15, 0.4, 0.15, 5, 2);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  for (int trial = 0; trial < 500; ++trial) {
+  for (int trial = 0; trial < 200; ++trial) {
     SCOPED_TRACE(trial);
     const Point<2> shift(0.3 * uniform(random), 0.3 * uniform(random));
     const double scale = 0.02 + std::abs(uniform(random));
@@ -104,7 +104,7 @@ TEST(Cut, RandomLatticePositionsMeetExactly) {
     return static_cast<double>(static_cast<int>(random() % (2 * range + 1)) - range);
   };
   int in_contact = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < 1500; ++trial) {
     SCOPED_TRACE(trial);
     Solids solids;
     for (int s = 0; s < 2; ++s) {
