@@ -1,0 +1,35 @@
+// A head-flow curve as table, JSON and picture.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/measured_curve.hpp"
+#include "hq_curve.hpp"
+#include "model.hpp"
+
+namespace undula {
+
+/// What was asked and what was answered.
+struct HqReport {
+  std::string model_file;
+  double frequency_Hz = 0;
+  double stroke_mm = 0;
+  std::span<const rom::HqPoint> points;
+  const MeasuredCurve* measured = nullptr; ///< nullptr: no data given
+};
+
+/// Columns head, flow, error estimate, inside the training box; with data also the measured fit at that head.
+std::string hq_table(const HqReport& report);
+
+/// JSON: `points[]` with head_mmHg, flow_l_per_min, error_l_per_min (null where unknown),
+/// inside_training_box, converged, and measured_l_per_min (null outside the data) where data were given.
+std::string hq_json(const HqReport& report);
+
+/// Line with error band, the model's full-order runs at this frequency and stroke, measured samples.
+/// Returns false, after a warning, where gnuplot is missing.
+bool plot_hq_report(const std::filesystem::path& picture, const HqReport& report, const rom::Model& model);
+
+} // namespace undula

@@ -1,0 +1,47 @@
+// undula: head-flow curves of wave-membrane blood pumps. Exit codes: 0 done, 1 the numerics failed, 2 wrong
+// input.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "apps/commands.hpp"
+#include "base/error.hpp"
+
+namespace {
+
+constexpr int numerics_failed = 1;
+constexpr int wrong_input = 2;
+
+int fail(const std::exception& error, int exit_code) {
+  std::fprintf(stderr, "undula: %s\n", error.what());
+  return exit_code;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  // 1. Logs go to stderr: stdout is for results.
+  spdlog::set_default_logger(spdlog::stderr_color_mt("undula"));
+  spdlog::set_pattern("%^%l%$: %v");
+
+  // 2. The command line.
+  CLI::App app("Undula predicts the head-flow curve of a wave-membrane blood pump.", "undula");
+  app.require_subcommand(1);
+  undula::add_check_command(app);
+  undula::add_hq_command(app);
+  undula::add_validate_command(app);
+
+  // 3. Run; every failure becomes one message and an exit code.
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : wrong_input; // --help ends here with 0
+  } catch (const undula::InputError& error) {
+    return fail(error, wrong_input);
+  } catch (const std::exception& error) {
+    return fail(error, numerics_failed);
+  }
+  return 0;
+}
