@@ -44,12 +44,20 @@ std::string gnuplot_string(const std::string& text) {
   return quoted + "'";
 }
 
-bool draw_picture(const std::filesystem::path& picture, const std::string& data,
-                  const std::string& commands) {
+void check_picture_name(const std::filesystem::path& picture) {
   if (picture.extension() != ".png" || picture.stem().empty()) {
     throw InputError("the picture has a name of another format", '"' + picture.string() + '"',
                      "a name that ends in .png", "--plot");
   }
+  if (!std::filesystem::is_directory(std::filesystem::absolute(picture).parent_path())) {
+    throw InputError("the folder of the picture does not exist", '"' + picture.string() + '"',
+                     "an existing folder", "--plot");
+  }
+}
+
+bool draw_picture(const std::filesystem::path& picture, const std::string& data,
+                  const std::string& commands) {
+  check_picture_name(picture);
   const std::filesystem::path full = std::filesystem::absolute(picture);
   const std::string name = full.stem().string();
   const std::string script = "# " + name + ".png: draw it again by `gnuplot " + name + ".gp`\n" +
