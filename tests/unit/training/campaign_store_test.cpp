@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstring>
+#include <cstdio>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -89,7 +89,7 @@ protected:
     try {
       body();
     } catch (const std::exception& error) {
-      ::write(STDERR_FILENO, error.what(), std::strlen(error.what()));
+      std::fputs(error.what(), stderr);
       code = 1;
     }
     ::_exit(code); // none of the parent's exit handlers (MPI)
