@@ -1,5 +1,6 @@
 #include "geometry/gmsh_file.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -9,6 +10,9 @@
 namespace undula {
 
 namespace {
+
+/// Larger integers are no tags or counts; all up to here are exact as double and fit into an int.
+constexpr double greatest_tag = 2147483647.0;
 
 /// Words of a text file with the line they stand on.
 class Words {
@@ -59,10 +63,9 @@ public:
 
   long integer() {
     const double value = number();
-    const long rounded = static_cast<long>(value);
-    if (static_cast<double>(rounded) != value)
+    if (!(std::abs(value) <= greatest_tag) || value != std::trunc(value))
       fail("the mesh file is broken", std::to_string(value), "an integer");
-    return rounded;
+    return static_cast<long>(value);
   }
 
   long count() {
