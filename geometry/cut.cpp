@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "base/error.hpp"

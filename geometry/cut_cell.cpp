@@ -1,7 +1,5 @@
 #include "geometry/cut_cell.hpp"
 
-#include <numeric>
-
 namespace undula {
 
 template <int dim>

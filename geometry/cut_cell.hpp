@@ -31,7 +31,7 @@ struct CellCut {
 template <int dim>
 CellCut<dim> cut_cell(const HyperplaneTable<dim>& table, int cell, std::span<const SolidCell> solid_cells);
 
-/// The piece of positive measure that two polytopes with disjoint interiors share along one hyperplane.
+/// Whether two pieces of one cell share a piece of positive measure of a facet.
 template <int dim>
 bool share_facet(const Polytope<dim>& a, const Polytope<dim>& b, const HyperplaneTable<dim>& table);
 

@@ -13,19 +13,19 @@ namespace undula {
 /// An element wholly inside a solid has none.
 struct FluidPart {
   int cell = -1;
-  bool cut = false;          ///< false: the part is the whole element
-  double measure = 0;        ///< cm^dim
-  int quadrature_begin = 0;  ///< range in CutMesh::volume_quadrature (empty for uncut parts)
+  bool cut = false;         ///< false: the part is the whole element
+  double measure = 0;       ///< cm^dim
+  int quadrature_begin = 0; ///< range in CutMesh::volume_quadrature (empty for uncut parts)
   int quadrature_end = 0;
 };
 
-/// Piece of the skin of a solid inside one fluid part.
+/// Convex piece of the skin of a solid that bounds one fluid part (several may share part and solid cell).
 template <int dim>
 struct InterfacePiece {
-  int part = -1;         ///< index into CutMesh::parts
-  int solid = -1;        ///< which solid mesh
-  int solid_cell = -1;   ///< cell of the solid mesh behind the piece
-  Point<dim> normal;     ///< unit, out of the fluid, into the solid
+  int part = -1;            ///< index into CutMesh::parts
+  int solid = -1;           ///< which solid mesh
+  int solid_cell = -1;      ///< cell of the solid mesh behind the piece
+  Point<dim> normal;        ///< unit, out of the fluid, into the solid
   int quadrature_begin = 0; ///< range in CutMesh::interface_quadrature
   int quadrature_end = 0;
 };
@@ -48,10 +48,10 @@ struct BoundaryPiece {
 
 template <int dim>
 struct CutMesh {
-  SimplexMesh<dim> mesh;   ///< the background
-  FacetTable<dim> facets;  ///< of the background
-  std::vector<FluidPart> parts;          ///< ordered by cell
-  std::vector<int> cell_parts;           ///< [cell], [cell + 1): range of parts of a cell
+  SimplexMesh<dim> mesh;        ///< the background
+  FacetTable<dim> facets;       ///< of the background
+  std::vector<FluidPart> parts; ///< ordered by cell
+  std::vector<int> cell_parts;  ///< [cell], [cell + 1): range of parts of a cell
   std::vector<InterfacePiece<dim>> interface;
   std::vector<FacetConnection> connections;
   std::vector<BoundaryPiece> boundary;

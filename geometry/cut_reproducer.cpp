@@ -1,6 +1,8 @@
 #include "geometry/cut_reproducer.hpp"
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>

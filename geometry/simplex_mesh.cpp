@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <tuple>
 
 #include "base/error.hpp"
 
