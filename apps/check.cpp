@@ -8,11 +8,10 @@
 
 #include "apps/commands.hpp"
 #include "apps/text_table.hpp"
+#include "fom/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
-#include "geometry/gmsh_import.hpp"
 #include "geometry/mesh_quality.hpp"
-#include "geometry/pump.hpp"
 
 namespace undula {
 namespace {
@@ -31,17 +30,10 @@ struct NamedMesh {
 
 /// Meshes the profile, or reads the meshes, of a scene; throws InputError for what is wrong with them.
 std::vector<NamedMesh> check_meshes(const Scene& scene) {
-  if (!scene.profile.empty()) {
-    const PumpProfile profile = read_pump_profile(scene.profile);
-    const PumpMeshSizes sizes = {scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
-                                 scene.mesh.growth};
-    return {{"background", mesh_quality(pump_background(profile, sizes))},
-            {"membrane", mesh_quality(pump_membrane(profile, sizes))},
-            {"magnet", mesh_quality(pump_magnet(profile, sizes))}};
-  }
-  std::vector<NamedMesh> meshes = {{"background", mesh_quality(import_gmsh<2>(scene.fluid_mesh).mesh)}};
-  for (const auto& file : scene.solid_meshes) {
-    meshes.push_back({file.filename().string(), mesh_quality(import_gmsh<2>(file).mesh)});
+  const FsiProblem<2> problem = pump_problem(scene);
+  std::vector<NamedMesh> meshes = {{"background", mesh_quality(problem.background)}};
+  for (const SolidBody<2>& solid : problem.solids) {
+    meshes.push_back({solid.name, mesh_quality(solid.mesh)});
   }
   return meshes;
 }

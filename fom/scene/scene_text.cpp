@@ -1,8 +1,7 @@
 // Texts made from single keys of the scene table: ranges, defaults, numbers.
-#include <array>
-#include <charconv>
 #include <cstdio>
 
+#include "fom/io/text_file.hpp"
 #include "fom/scene/scene_table.hpp"
 
 namespace undula {
@@ -84,9 +83,7 @@ std::string default_text(const SceneKey& key) {
 }
 
 std::string shortest_number(double value) {
-  std::array<char, 40> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  std::string number(text.data(), end);
+  std::string number = exact_number(value);
   // TOML tells floats from integers by the point or the exponent.
   if (number.find_first_of(".e") == std::string::npos) {
     number += ".0";

@@ -1,0 +1,128 @@
+// Measured curves, lists of heads, the benchmark's comparison.
+#include "apps/measured_curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "apps/head_list.hpp"
+#include "apps/progress.hpp"
+#include "apps/text_table.hpp"
+#include "apps/validation.hpp"
+#include "base/error.hpp"
+#include "tests/unit/apps/run_undula.hpp"
+
+namespace undula {
+namespace {
+
+const std::string shipped = UNDULA_SOURCE_DIR "/data/measured/corwave_120hz_0.53mm.csv";
+
+TEST(MeasuredCurve, TheFitOfTheShippedDataIsTheReference) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  EXPECT_NEAR(curve.fit.coefficients[0], 5.92517, 1e-5);
+  EXPECT_NEAR(curve.fit.coefficients[1], -0.018991, 1e-6);
+  EXPECT_NEAR(curve.fit.coefficients[2], -1.2321e-3, 1e-7);
+  EXPECT_NEAR(curve.fit.rms_l_per_min, 0.095, 5e-4);
+  EXPECT_NEAR(curve.fit(55), 1.15, 5e-3);
+}
+
+TEST(MeasuredCurve, AParabolaIsFittedExactly) {
+  std::vector<double> head, flow;
+  for (int i = 0; i < 7; ++i) {
+    head.push_back(1000 + 3 * i); // far from zero: the fit has to be well conditioned
+    flow.push_back(2 - 0.5 * head.back() + 1e-3 * head.back() * head.back());
+  }
+  const QuadraticFit fit = fit_quadratic(head, flow);
+  EXPECT_NEAR(fit.coefficients[2], 1e-3, 1e-12);
+  EXPECT_NEAR(fit.coefficients[1], -0.5, 1e-9);
+  EXPECT_NEAR(fit.coefficients[0], 2, 1e-6);
+  EXPECT_LT(fit.rms_l_per_min, 1e-10);
+}
+
+TEST(MeasuredCurve, SamplesAreSortedAndSpacesCommentsAndWindowsLineEndsAreRead) {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "data.csv";
+  std::ofstream(file)
+      << "# a comment\r\n\r\nhead_mmHg,flow_l_per_min\r\n60, 1\r\n40,3\r\n# between\r\n 50 ,2.5\r\n40,2\r\n";
+  const MeasuredCurve curve = read_measured_curve(file);
+  EXPECT_EQ(curve.head_mmHg, (std::vector<double>{40, 40, 50, 60}));
+  EXPECT_EQ(curve.flow_l_per_min, (std::vector<double>{2, 3, 2.5, 1}));
+}
+
+TEST(MeasuredCurve, ExtractionGivesTheFitAndTheNearestSample) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  const std::vector<double> heads = {50};
+  const auto points = extract_points(curve, heads);
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_DOUBLE_EQ(points[0].nearest_head_mmHg, 50.002);
+  EXPECT_DOUBLE_EQ(points[0].nearest_l_per_min, 1.834);
+  EXPECT_NEAR(points[0].fit_l_per_min, 1.90, 5e-3);
+  const std::vector<double> outside = {50, 80};
+  EXPECT_THROW(extract_points(curve, outside), InputError);
+}
+
+TEST(Validation, TheNormIsTheTwoNormOfTheDifferences) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  const std::vector<double> heads = {50, 55, 60};
+  std::vector<double> asked;
+  const Validation shifted = validate(curve, heads, [&](double head) {
+    asked.push_back(head);
+    return curve.fit(head) + (head == 50 ? 0.3 : head == 55 ? -0.4 : 0.0);
+  });
+  EXPECT_EQ(asked, heads);
+  EXPECT_NEAR(shifted.norm_to_fit_l_per_min, 0.5, 1e-12);
+  EXPECT_NEAR(shifted.points[1].computed_l_per_min, curve.fit(55) - 0.4, 1e-15);
+
+  const auto points = extract_points(curve, heads);
+  const Validation nearest = validate(curve, heads, [&](double head) {
+    for (const ExtractedPoint& point : points) {
+      if (point.head_mmHg == head) {
+        return point.nearest_l_per_min + 0.1;
+      }
+    }
+    return 0.0;
+  });
+  EXPECT_NEAR(nearest.norm_to_nearest_l_per_min, 0.1 * std::sqrt(3.0), 1e-12);
+}
+
+TEST(Validation, AHeadOutsideTheDataIsRefusedBeforeAnythingRuns) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  const std::vector<double> heads = {50, 90};
+  int runs = 0;
+  EXPECT_THROW(validate(curve, heads,
+                        [&](double) {
+                          ++runs;
+                          return 0.0;
+                        }),
+               InputError);
+  EXPECT_EQ(runs, 0);
+}
+
+TEST(HeadList, RangesIncludeTheirEndAndMixWithValues) {
+  EXPECT_EQ(parse_heads("40:62:2").size(), 12u);
+  EXPECT_DOUBLE_EQ(parse_heads("40:62:2").back(), 62);
+  EXPECT_EQ(parse_heads("50"), (std::vector<double>{50}));
+  EXPECT_EQ(parse_heads("-5,50.5,0"), (std::vector<double>{-5, 50.5, 0}));
+  EXPECT_EQ(parse_heads("60:50:-5,40"), (std::vector<double>{60, 55, 50, 40}));
+  EXPECT_EQ(parse_heads("0:1:0.1").size(), 11u); // 0.1 is not exact in binary
+  EXPECT_EQ(parse_heads("0:1:0.4"), (std::vector<double>{0, 0.4, 0.8}));
+  EXPECT_EQ(even_heads(0, 70, 8), (std::vector<double>{0, 10, 20, 30, 40, 50, 60, 70}));
+  EXPECT_EQ(even_heads(40, 60, 1), (std::vector<double>{50}));
+}
+
+TEST(Progress, TheLineEstimatesTheTimeLeft) {
+  EXPECT_EQ(progress_line("solve", 0, 10, 5), "solve  0 %  0/10");
+  EXPECT_EQ(progress_line("solve", 1, 3, 60), "solve  33 %  1/3  2:00 left");
+  EXPECT_EQ(progress_line("solve", 1, 100, 60), "solve  1 %  1/100  1:39:00 left");
+  EXPECT_EQ(progress_line("solve", 3, 3, 60), "solve  100 %  3/3");
+}
+
+TEST(TextTable, ColumnsAreAligned) {
+  EXPECT_EQ(text_table({"a", "bb"}, {{"long", "1"}, {"x", "222"}}), "a      bb\nlong    1\nx     222\n");
+  EXPECT_EQ(decimals(1.2345, 2), "1.23");
+  EXPECT_EQ(shortest(0.53), "0.53");
+}
+
+} // namespace
+} // namespace undula
