@@ -4,33 +4,36 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "panel_product.hpp"
+
 namespace undula::rom {
 
 /// Convection tensor T(i, j, k) = convection[k](i, j), arranged for products over many time points. Where
-/// every convection[k] is skew (to round-off), only its lower triangle is kept and multiplied.
+/// every convection[k] is skew (to round-off), only its strictly lower triangle is kept and multiplied.
 class Convection {
 public:
-  Convection() = default;
   explicit Convection(const std::vector<Eigen::MatrixXd>& convection);
 
-  int size() const { return size_; }
   bool skew() const { return skew_; }
 
-  /// C(b_n) for every column b_n of `b` (nu x m): one column of nu * nu entries (column-major C) per time
-  /// point.
-  void matrices(const Eigen::MatrixXd& b, Eigen::MatrixXd& c) const;
+  /// C(b_n) for every column b_n of `b` (nu x m): one column per time point, to be used by apply() only.
+  void matrices(const Eigen::MatrixXd& b, Eigen::MatrixXd& c) const { by_advector_.multiply(b, c); }
 
-  /// B(a_n), the derivative of C(b) a_n with respect to b, laid out as in matrices().
-  void derivatives(const Eigen::MatrixXd& a, Eigen::MatrixXd& c) const;
+  /// Derivative of C(b_n) a_n with respect to b_n, nu x nu (column-major) in the top nu * nu entries of a
+  /// column.
+  void derivatives(const Eigen::MatrixXd& a, Eigen::MatrixXd& c) const { by_advected_.multiply(a, c); }
+
+  /// f_n = C(b_n) a_n for every column; c from matrices(); f is nu x m.
+  void apply(const Eigen::MatrixXd& c, const Eigen::MatrixXd& a, Eigen::MatrixXd& f) const;
+
+  /// f_n += (derivative at n) b_n for every column; c from derivatives().
+  void add_derivative(const Eigen::MatrixXd& c, const Eigen::MatrixXd& b, Eigen::MatrixXd& f) const;
 
 private:
-  int size_ = 0;
+  Eigen::Index size_ = 0;
   bool skew_ = false;
-  Eigen::MatrixXd by_advector_; // rows (i, j), i > j only if skew; columns k
-  Eigen::MatrixXd by_advected_; // rows (i, k); columns j
+  PanelProduct by_advector_; ///< rows (i, j), i > j only if skew; columns k
+  PanelProduct by_advected_; ///< rows (i, k); columns j
 };
-
-/// f_n = c_n a_n for every column, with c as filled by Convection::matrices() or derivatives(). f is nu x m.
-void apply_columns(const Eigen::MatrixXd& c, const Eigen::MatrixXd& a, Eigen::MatrixXd& f, bool accumulate);
 
 } // namespace undula::rom

@@ -25,6 +25,7 @@ struct PeriodicSolver::Linearisation {
   Eigen::MatrixXd extrapolated; ///< nu x points: u*
   Eigen::MatrixXd by_advected;  ///< C(u*) at every point
   Eigen::MatrixXd by_advector;  ///< derivative with respect to u*
+  Eigen::MatrixXd force;        ///< nu x coefficients: of C(u*) u
 };
 
 PeriodicSolver::PeriodicSolver(const Operators& operators, double frequency_Hz, int steps_per_period,
@@ -50,8 +51,9 @@ Eigen::MatrixXd PeriodicSolver::residual(const Eigen::MatrixXd& u, const Eigen::
   at.extrapolated.noalias() = u * harmonics_.extrapolated_synthesis();
   convection_.matrices(at.extrapolated, at.by_advected);
   Eigen::MatrixXd force;
-  apply_columns(at.by_advected, at.values, force, false);
-  return u - linear_answer + resolvent_.velocity_response(force * harmonics_.analysis());
+  convection_.apply(at.by_advected, at.values, force);
+  at.force.noalias() = force * harmonics_.analysis();
+  return u - linear_answer + resolvent_.velocity_response(at.force);
 }
 
 bool PeriodicSolver::newton(const Eigen::MatrixXd& force, PeriodicState& state) {
@@ -67,8 +69,8 @@ bool PeriodicSolver::newton(const Eigen::MatrixXd& force, PeriodicState& state) 
     const auto relative = [&] { return r.norm() / std::max(u.norm(), 1e-300); };
     const auto derivative = [&](const Eigen::MatrixXd& in, Eigen::MatrixXd& out) {
       Eigen::MatrixXd product;
-      apply_columns(at.by_advected, in * harmonics_.synthesis(), product, false);
-      apply_columns(at.by_advector, in * harmonics_.extrapolated_synthesis(), product, true);
+      convection_.apply(at.by_advected, in * harmonics_.synthesis(), product);
+      convection_.add_derivative(at.by_advector, in * harmonics_.extrapolated_synthesis(), product);
       out = in + resolvent_.velocity_response(product * harmonics_.analysis());
     };
     state.residual = r.norm() > 0 ? relative() : 0.0;
@@ -93,25 +95,23 @@ bool PeriodicSolver::newton(const Eigen::MatrixXd& force, PeriodicState& state) 
       state.residual = relative();
     }
     const double tail = u.rightCols(std::min<Eigen::Index>(4, u.cols())).norm() / std::max(u.norm(), 1e-300);
-    if (harmonics_.complete() || !(tail > options_.tail_tolerance)) return true;
+    if (harmonics_.complete() || !(tail > options_.tail_tolerance)) {
+      finish(force, at.force, state);
+      return true;
+    }
     harmonics_ =
         Harmonics(steps_per_period_, harmonics_.harmonics() + std::max(4, harmonics_.harmonics() / 3));
   }
 }
 
-void PeriodicSolver::finish(const Eigen::MatrixXd& force, PeriodicState& state) const {
-  const int nu = operators_.velocity_modes, nv = operators_.displacement_modes;
-  Eigen::MatrixXd values, extrapolated, c, product;
-  values.noalias() = state.velocity * harmonics_.synthesis();
-  extrapolated.noalias() = state.velocity * harmonics_.extrapolated_synthesis();
-  convection_.matrices(extrapolated, c);
-  apply_columns(c, values, product, false);
+void PeriodicSolver::finish(const Eigen::MatrixXd& force, const Eigen::MatrixXd& convective_force,
+                            PeriodicState& state) const {
   Eigen::MatrixXd total = resized(force, harmonics_.coefficients());
-  total.topRows(nu) += product * harmonics_.analysis();
+  total.topRows(operators_.velocity_modes) += convective_force;
   state.y = -resolvent_.solve(total);
   state.displacement = resolvent_.displacement(state.y);
-  state.y.bottomRows(nv).col(0).setZero(); // the membrane's velocity has no mean
-  state.velocity = state.y.topRows(nu);
+  state.y.bottomRows(operators_.displacement_modes).col(0).setZero(); // the membrane's velocity has no mean
+  state.velocity = state.y.topRows(operators_.velocity_modes);
 }
 
 PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::MatrixXd& guess) {
@@ -123,7 +123,6 @@ PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::
   state.velocity = guess;
   if (options_.direct && newton(force, state)) {
     state.direct = state.converged = true;
-    finish(force, state);
   } else if (options_.march_periods > 0) {
     march({frequency_, stroke_cm, head}, state);
   } else {

@@ -61,7 +61,8 @@ private:
   bool newton(const Eigen::MatrixXd& force, PeriodicState& state);
   Eigen::MatrixXd residual(const Eigen::MatrixXd& u, const Eigen::MatrixXd& linear_answer,
                            Linearisation& at) const;
-  void finish(const Eigen::MatrixXd& force, PeriodicState& state) const;
+  void finish(const Eigen::MatrixXd& force, const Eigen::MatrixXd& convective_force,
+              PeriodicState& state) const;
   void march(const Drive& drive, PeriodicState& state);
 
   const Operators& operators_;

@@ -145,7 +145,7 @@ TEST(TimeMarch, TwoHundredPeriodsWithoutDrift) {
 }
 
 TEST(TimeMarch, RefusesWrongInputAndReportsABlowUp) {
-  auto o = synthetic_operators({6, 2, 2}, 1.0);
+  auto o = synthetic_operators({6, 2, 2}, 0.0);
   EXPECT_THROW(TimeMarch(o, {0, 1, 1}, 48, 2), InputError);
   EXPECT_THROW(TimeMarch(o, {100, 1, 1}, 3, 2), InputError);
   o.linear.topLeftCorner(6, 6).diagonal().array() -= 3e3; // gains energy
