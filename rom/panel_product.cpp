@@ -29,6 +29,7 @@ void multiply_panels(const double* panels, Eigen::Index panel_count, const doubl
       for (Eigen::Index k = 0; k < inner; ++k, a += panel_rows, right += block_columns) {
         Rows column;
         std::memcpy(&column, a, sizeof column);
+#pragma GCC unroll 6
         for (Eigen::Index c = 0; c < block_columns; ++c) sum[c] += column * right[c];
       }
       for (Eigen::Index c = 0; c < block_columns; ++c)

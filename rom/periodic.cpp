@@ -43,6 +43,9 @@ PeriodicSolver::PeriodicSolver(const Operators& operators, double frequency_Hz, 
   if (steps_per_period < 4)
     throw InputError("too few time steps per period", std::to_string(steps_per_period), "at least 4",
                      "steps per period");
+  resolvent_.extend(harmonics_.harmonics());
+  unit_stroke_ = -resolvent_.solve(resolvent_.holder_force(harmonics_.coefficients()));
+  unit_head_ = -resolvent_.solve(resolvent_.head_force(harmonics_.coefficients()));
 }
 
 Eigen::MatrixXd PeriodicSolver::residual(const Eigen::MatrixXd& u, const Eigen::MatrixXd& linear_answer,
@@ -56,13 +59,14 @@ Eigen::MatrixXd PeriodicSolver::residual(const Eigen::MatrixXd& u, const Eigen::
   return u - linear_answer + resolvent_.velocity_response(at.force);
 }
 
-bool PeriodicSolver::newton(const Eigen::MatrixXd& force, PeriodicState& state) {
+bool PeriodicSolver::newton(double stroke, double head, PeriodicState& state) {
   const int nu = operators_.velocity_modes;
   auto& u = state.velocity;
   for (;;) { // adds harmonics until the tail is small
     const int columns = harmonics_.coefficients();
     resolvent_.extend(harmonics_.harmonics());
-    const Eigen::MatrixXd linear_answer = -resolvent_.solve(resized(force, columns)).topRows(nu);
+    const Eigen::MatrixXd linear_state = stroke * unit_stroke_ + head * unit_head_;
+    const Eigen::MatrixXd linear_answer = resized(linear_state.topRows(nu), columns);
     u = u.size() > 0 ? resized(u, columns) : linear_answer;
     Linearisation at;
     Eigen::MatrixXd r = residual(u, linear_answer, at);
@@ -96,7 +100,7 @@ bool PeriodicSolver::newton(const Eigen::MatrixXd& force, PeriodicState& state) 
     }
     const double tail = u.rightCols(std::min<Eigen::Index>(4, u.cols())).norm() / std::max(u.norm(), 1e-300);
     if (harmonics_.complete() || !(tail > options_.tail_tolerance)) {
-      finish(force, at.force, state);
+      finish(linear_state, at.force, state);
       return true;
     }
     harmonics_ =
@@ -104,29 +108,25 @@ bool PeriodicSolver::newton(const Eigen::MatrixXd& force, PeriodicState& state) 
   }
 }
 
-void PeriodicSolver::finish(const Eigen::MatrixXd& force, const Eigen::MatrixXd& convective_force,
+void PeriodicSolver::finish(const Eigen::MatrixXd& linear_state, const Eigen::MatrixXd& convective_force,
                             PeriodicState& state) const {
-  Eigen::MatrixXd total = resized(force, harmonics_.coefficients());
-  total.topRows(operators_.velocity_modes) += convective_force;
-  state.y = -resolvent_.solve(total);
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(linear_state.rows(), convective_force.cols());
+  total.topRows(operators_.velocity_modes) = convective_force;
+  state.y = resized(linear_state, total.cols()) - resolvent_.solve(total);
   state.displacement = resolvent_.displacement(state.y);
   state.y.bottomRows(operators_.displacement_modes).col(0).setZero(); // the membrane's velocity has no mean
   state.velocity = state.y.topRows(operators_.velocity_modes);
 }
 
 PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::MatrixXd& guess) {
-  resolvent_.extend(harmonics_.harmonics());
-  const int columns = harmonics_.coefficients();
-  const Eigen::MatrixXd force =
-      stroke_cm * resolvent_.holder_force(columns) + head * resolvent_.head_force(columns);
   PeriodicState state;
   state.velocity = guess;
-  if (options_.direct && newton(force, state)) {
+  if (options_.direct && newton(stroke_cm, head, state)) {
     state.direct = state.converged = true;
   } else if (options_.march_periods > 0) {
     march({frequency_, stroke_cm, head}, state);
   } else {
-    state.velocity = Eigen::MatrixXd::Zero(operators_.velocity_modes, columns);
+    state.velocity = Eigen::MatrixXd::Zero(operators_.velocity_modes, 1);
     return state;
   }
   state.mean_outflow = operators_.outflow.dot(state.velocity.col(0));

@@ -46,7 +46,8 @@ struct PeriodicState {
 /// tolerances.
 class PeriodicSolver {
 public:
-  /// Keeps a reference to `operators`.
+  /// Keeps a reference to `operators`. Throws InputError for a frequency that is not positive or fewer than 4
+  /// steps, NumericsError for a singular linear part.
   PeriodicSolver(const Operators& operators, double frequency_Hz, int steps_per_period,
                  const PeriodicOptions& options = {});
 
@@ -58,10 +59,10 @@ public:
 
 private:
   struct Linearisation; // of convection, at the points in time
-  bool newton(const Eigen::MatrixXd& force, PeriodicState& state);
+  bool newton(double stroke, double head, PeriodicState& state);
   Eigen::MatrixXd residual(const Eigen::MatrixXd& u, const Eigen::MatrixXd& linear_answer,
                            Linearisation& at) const;
-  void finish(const Eigen::MatrixXd& force, const Eigen::MatrixXd& convective_force,
+  void finish(const Eigen::MatrixXd& linear_state, const Eigen::MatrixXd& convective_force,
               PeriodicState& state) const;
   void march(const Drive& drive, PeriodicState& state);
 
@@ -72,6 +73,7 @@ private:
   Convection convection_;
   Resolvent resolvent_;
   Harmonics harmonics_;
+  Eigen::MatrixXd unit_stroke_, unit_head_; ///< N x coefficients: linear answers to 1 cm and to 1 dyn/cm^2
 };
 
 } // namespace undula::rom
