@@ -111,7 +111,8 @@ QuadraticFit fit_quadratic(std::span<const double> head_mmHg, std::span<const do
   fit.coefficients[2] = scaled[2] / (scale * scale);
   fit.coefficients[1] = scaled[1] / scale - 2 * centre * fit.coefficients[2];
   fit.coefficients[0] = scaled[0] - scaled[1] * centre / scale + centre * centre * fit.coefficients[2];
-  fit.rms_l_per_min = std::sqrt((columns * scaled - flow).squaredNorm() / static_cast<double>(n));
+  fit.scatter_l_per_min =
+      n > 3 ? std::sqrt((columns * scaled - flow).squaredNorm() / static_cast<double>(n - 3)) : 0.0;
   return fit;
 }
 

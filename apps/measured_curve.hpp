@@ -11,7 +11,8 @@ namespace undula {
 /// Q(H) = c0 + c1 H + c2 H^2, H in mmHg, Q in l/min.
 struct QuadraticFit {
   Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();
-  double rms_l_per_min = 0; ///< root mean square of the residuals
+  /// sqrt(sum of squared residuals / (n - 3)): the standard deviation of a sample; 0 for n = 3
+  double scatter_l_per_min = 0;
 
   [[nodiscard]] double operator()(double head_mmHg) const;
 };

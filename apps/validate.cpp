@@ -70,7 +70,7 @@ std::string json_text(const Validation& validation, const QuadraticFit& fit) {
   }
   result["norm_to_fit_l_per_min"] = validation.norm_to_fit_l_per_min;
   result["norm_to_nearest_l_per_min"] = validation.norm_to_nearest_l_per_min;
-  result["fit_rms_l_per_min"] = fit.rms_l_per_min;
+  result["fit_scatter_l_per_min"] = fit.scatter_l_per_min;
   return result.dump(2) + "\n";
 }
 
@@ -85,11 +85,11 @@ void plot(const std::string& picture, const MeasuredCurve& curve, const Validati
   for (const double head : curve.head_mmHg) {
     fit_flow.push_back(curve.fit(head));
   }
-  const std::vector<double> scatter(fit_flow.size(), curve.fit.rms_l_per_min);
+  const std::vector<double> scatter(fit_flow.size(), curve.fit.scatter_l_per_min);
   const std::array<HqPoints, 2> sets = {
       {{"computed", heads, computed}, {"measured", curve.head_mmHg, curve.flow_l_per_min}}};
   plot_hq_curve(picture, title,
-                {"quadratic fit of the data", curve.head_mmHg, fit_flow, scatter, "rms scatter of the data"},
+                {"quadratic fit of the data", curve.head_mmHg, fit_flow, scatter, "scatter of the data"},
                 sets);
 }
 

@@ -80,6 +80,7 @@ struct TrainingPlan {
   int sampled_periods = 0;                                            ///< the last ones of each run
   int velocity_modes = 0, pressure_modes = 0, displacement_modes = 0; ///< 0: by energy_tolerance
   double energy_tolerance = 0;                                        ///< 1 - captured energy
+  double periodic_tolerance = 0; ///< change of the velocity over a period at which a run counts as periodic
   int ranks_per_run = 1;
 };
 

@@ -107,7 +107,7 @@ std::vector<SceneKey> numerics_keys() {
   constexpr int many = std::numeric_limits<int>::max();
   return {
       {"mesh.gap_elements", "", "elements across the narrowest clearance between solids and walls",
-       shapes_state, RealKey{FIELD(mesh.gap_elements), 1, from_to(1, 1000), 5.0}},
+       shapes_state, RealKey{FIELD(mesh.gap_elements), 1, from_to(2, 1000), 5.0}},
       {"mesh.channel_size_mm", "mm", "element size in the channels", shapes_state,
        RealKey{FIELD(mesh.channel_size), cm_per_mm, above_to(0, 1e4), {}}},
       {"mesh.membrane_size_mm", "mm", "element size of the membrane's own mesh", shapes_state,
@@ -196,6 +196,9 @@ std::vector<SceneKey> training_keys() {
             FIELD(training.displacement_modes), 0, 0),
       bound("training.energy_tolerance", "", "energy that the modes may miss, as a part of the whole",
             FIELD(training.energy_tolerance), 1, between(0, 1), 1e-6),
+      bound("training.periodic_tolerance", "",
+            "change of the velocity over a period at which a run counts as periodic",
+            FIELD(training.periodic_tolerance), 1, between(0, 1), 2e-3),
       count("training.ranks_per_run", "MPI ranks that share one full-order run",
             FIELD(training.ranks_per_run), 1, 1),
   };
