@@ -107,6 +107,8 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
     const auto scope = timer_.measure("factor");
     const bool reuse = factored_at_ >= 0 && step % factor_every_ != 0;
     check_petsc(KSPSetReusePreconditioner(solver_.get(), reuse ? PETSC_TRUE : PETSC_FALSE), "reusing the factors");
+    // Without new operators KSPSetUp would leave the factorisation to KSPSolve, and its time to phase "solve".
+    check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
   }
