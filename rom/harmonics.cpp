@@ -15,12 +15,15 @@ Complex phase(int k, int of) { return std::polar(1.0, 2 * std::numbers::pi * k /
 template <class Gain>
 Eigen::MatrixXd trigonometric(int coefficients, int points, Gain gain) {
   Eigen::MatrixXd matrix(coefficients, points);
+  Eigen::VectorXcd circle(points), gains(coefficients / 2 + 1);
+  for (int n = 0; n < points; ++n) circle[n] = phase(n, points);
+  for (int k = 0; k < gains.size(); ++k) gains[k] = gain(k);
   for (int n = 0; n < points; ++n) {
-    matrix(0, n) = std::real(gain(0));
+    matrix(0, n) = gains[0].real();
     for (int row = 1; row < coefficients; ++row) {
       const int k = (row + 1) / 2;
       // k n is reduced modulo the period in integers: exact angles for large products.
-      const Complex factor = gain(k) * phase(static_cast<int>((static_cast<long>(k) * n) % points), points);
+      const Complex factor = gains[k] * circle[(static_cast<long>(k) * n) % points];
       matrix(row, n) = row % 2 == 1 ? factor.real() : -factor.imag();
     }
   }
@@ -46,8 +49,8 @@ Complex Harmonics::difference(int k) const {
   return 1.5 - 2.0 * phase(-k, steps_) + 0.5 * phase(-2 * k, steps_);
 }
 
-Eigen::MatrixXd Harmonics::synthesis_at_steps() const {
-  return trigonometric(coefficients_, steps_, [](int) { return Complex(1.0); });
+Eigen::MatrixXd Harmonics::synthesis_at_steps(int steps_per_period, int coefficients) {
+  return trigonometric(coefficients, steps_per_period, [](int) { return Complex(1.0); });
 }
 
 } // namespace undula::rom

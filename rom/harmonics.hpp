@@ -34,7 +34,7 @@ public:
   const Eigen::MatrixXd& analysis() const { return analysis_; }
 
   /// coefficients x n_t: values at the steps t = 0, dt, ... of the scheme.
-  Eigen::MatrixXd synthesis_at_steps() const;
+  static Eigen::MatrixXd synthesis_at_steps(int steps_per_period, int coefficients);
 
 private:
   int steps_, harmonics_, coefficients_, points_;

@@ -121,7 +121,13 @@ void PeriodicSolver::finish(const Eigen::MatrixXd& linear_state, const Eigen::Ma
 PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::MatrixXd& guess) {
   PeriodicState state;
   state.velocity = guess;
-  if (options_.direct && newton(stroke_cm, head, state)) {
+  bool found = options_.direct && newton(stroke_cm, head, state);
+  if (options_.direct && !found &&
+      guess.size() > 0) { // a misleading guess: once more, from the linear answer
+    state.velocity.resize(0, 0);
+    found = newton(stroke_cm, head, state);
+  }
+  if (found) {
     state.direct = state.converged = true;
   } else if (options_.march_periods > 0) {
     march({frequency_, stroke_cm, head}, state);
@@ -162,8 +168,8 @@ void PeriodicSolver::march(const Drive& drive, PeriodicState& state) {
 }
 
 Eigen::MatrixXd PeriodicSolver::at_steps(const Eigen::MatrixXd& coefficients) const {
-  const Harmonics of(steps_per_period_, static_cast<int>(coefficients.cols() / 2));
-  return coefficients * of.synthesis_at_steps();
+  return coefficients *
+         Harmonics::synthesis_at_steps(steps_per_period_, static_cast<int>(coefficients.cols()));
 }
 
 } // namespace undula::rom

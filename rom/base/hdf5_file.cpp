@@ -391,15 +391,13 @@ std::string Hdf5File::unit(const std::string& name) const {
   return has_attribute(name, "unit") ? read_attribute<std::string>(name, "unit") : std::string();
 }
 
-template std::vector<double> Hdf5File::read<double>(const std::string&) const;
-template std::vector<int> Hdf5File::read<int>(const std::string&) const;
-template std::vector<std::int64_t> Hdf5File::read<std::int64_t>(const std::string&) const;
-template std::vector<double> Hdf5File::read<double>(const std::string&, const Shape&) const;
-template std::vector<int> Hdf5File::read<int>(const std::string&, const Shape&) const;
-template std::vector<std::int64_t> Hdf5File::read<std::int64_t>(const std::string&, const Shape&) const;
+#define UNDULA_INSTANTIATE_READ(T)                                                   \
+  template std::vector<T> Hdf5File::read<T>(const std::string&) const;               \
+  template std::vector<T> Hdf5File::read<T>(const std::string&, const Shape&) const; \
+  template T Hdf5File::read_attribute<T>(const std::string&, const std::string&) const;
+UNDULA_INSTANTIATE_READ(double)
+UNDULA_INSTANTIATE_READ(int)
+UNDULA_INSTANTIATE_READ(std::int64_t)
 template std::string Hdf5File::read_attribute<std::string>(const std::string&, const std::string&) const;
-template double Hdf5File::read_attribute<double>(const std::string&, const std::string&) const;
-template int Hdf5File::read_attribute<int>(const std::string&, const std::string&) const;
-template std::int64_t Hdf5File::read_attribute<std::int64_t>(const std::string&, const std::string&) const;
 
 } // namespace undula
