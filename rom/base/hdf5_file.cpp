@@ -285,17 +285,13 @@ void Hdf5File::write_attribute(const std::string& object, const std::string& nam
   put_attribute(id_, target_, object, name, type, type, value.empty() ? &nothing : value.data());
 }
 
-void Hdf5File::write_attribute(const std::string& object, const std::string& name, double value) {
-  put_attribute(id_, target_, object, name, stored_type<double>(), memory_type<double>(), &value);
-}
-
-void Hdf5File::write_attribute(const std::string& object, const std::string& name, int value) {
-  put_attribute(id_, target_, object, name, stored_type<int>(), memory_type<int>(), &value);
-}
-
-void Hdf5File::write_attribute(const std::string& object, const std::string& name, std::int64_t value) {
-  put_attribute(id_, target_, object, name, stored_type<std::int64_t>(), memory_type<std::int64_t>(), &value);
-}
+#define UNDULA_DEFINE_WRITE_ATTRIBUTE(T)                                                        \
+  void Hdf5File::write_attribute(const std::string& object, const std::string& name, T value) { \
+    put_attribute(id_, target_, object, name, stored_type<T>(), memory_type<T>(), &value);      \
+  }
+UNDULA_DEFINE_WRITE_ATTRIBUTE(double)
+UNDULA_DEFINE_WRITE_ATTRIBUTE(int)
+UNDULA_DEFINE_WRITE_ATTRIBUTE(std::int64_t)
 
 bool Hdf5File::exists(const std::string& name) const {
   const QuietErrors quiet;
