@@ -7,6 +7,7 @@
 namespace undula {
 
 void add_check_command(CLI::App& app);
+void add_solve_command(CLI::App& app);
 void add_hq_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 

@@ -30,12 +30,15 @@ int main(int argc, char** argv) {
   CLI::App app("Undula predicts the head-flow curve of a wave-membrane blood pump.", "undula");
   app.require_subcommand(1);
   undula::add_check_command(app);
+  undula::add_solve_command(app);
   undula::add_hq_command(app);
   undula::add_validate_command(app);
 
   // 3. Run; every failure becomes one message and an exit code.
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RuntimeError& told_elsewhere) {
+    return told_elsewhere.get_exit_code(); // rank 0 prints the message
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : wrong_input; // --help ends here with 0
   } catch (const undula::InputError& error) {

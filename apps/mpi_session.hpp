@@ -1,0 +1,18 @@
+// MPI, PETSc and SLEPc for the commands that need them, and for no longer than they do.
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace undula {
+
+/// Initialises MPI, PETSc and SLEPc with `petsc_options` ("-log_view", "-fsi_ksp_monitor", ...), runs `work`
+/// on every rank and finalises. `work` has to fail on all ranks or on none; rank 0 then throws what it threw,
+/// the others CLI::RuntimeError with the same exit code, so that a failure is told once. Logs of the other
+/// ranks are off. Throws InputError if the options do not begin with a "-".
+void run_parallel(const std::vector<std::string>& petsc_options, const std::function<void(MPI_Comm)>& work);
+
+} // namespace undula

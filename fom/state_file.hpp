@@ -1,0 +1,18 @@
+// States as checkpoints.
+#pragma once
+
+#include "fom/io/checkpoint.hpp"
+#include "fom/time_stepper.hpp"
+
+namespace undula {
+
+/// All time levels of a state, as the arrays "x_0", "x_1" (velocity, pressure) and "d_0", "d_1"
+/// (displacement).
+Checkpoint checkpoint_of(const State& state, const SceneStamp& scene,
+                         const std::map<std::string, std::string>& provenance);
+
+/// The state in a checkpoint. Throws InputError, naming `file`, if an array is missing or has not the size
+/// `unknowns`.
+State state_of(const Checkpoint& checkpoint, int unknowns, const std::filesystem::path& file);
+
+} // namespace undula

@@ -1,0 +1,118 @@
+#include "fom/step_table.hpp"
+
+#include <algorithm>
+
+#include "base/units.hpp"
+
+namespace undula {
+namespace {
+
+constexpr double mW_per_erg_per_s = 1e-4;
+constexpr double uJ_per_erg = 0.1;
+constexpr double mW_per_uJ_per_s = 1e-3;
+
+struct Column {
+  const char* name;
+  double (*value)(const Observation&);
+};
+
+constexpr Column columns[] = {
+    {"time_s", [](const Observation& o) { return o.time; }},
+    {"outflow_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.outflow); }},
+    {"inflow_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.inflow); }},
+    {"hydraulic_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.hydraulic_power; }},
+    {"holder_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.holder; }},
+    {"opening_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.opening; }},
+    {"viscous_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.viscous; }},
+    {"stabilisation_power_mW",
+     [](const Observation& o) { return mW_per_erg_per_s * o.energy.stabilisation; }},
+    {"damping_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.damping; }},
+    {"carried_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.carried; }},
+    {"kinetic_energy_uJ", [](const Observation& o) { return uJ_per_erg * o.energy.kinetic; }},
+    {"elastic_energy_uJ", [](const Observation& o) { return uJ_per_erg * o.energy.elastic; }},
+    {"speed_max_cm_per_s", [](const Observation& o) { return o.speed_max; }},
+    {"wall_shear_max_dyn_per_cm2", [](const Observation& o) { return o.wall_shear_max; }},
+    {"wall_shear_mean_dyn_per_cm2", [](const Observation& o) { return o.wall_shear_mean; }},
+    {"clearance_min_mm", [](const Observation& o) { return units::length_to_mm(o.clearance_min); }},
+    {"tip_displacement_mm", [](const Observation& o) { return units::length_to_mm(o.tip_displacement); }},
+    {"holder_displacement_mm",
+     [](const Observation& o) { return units::length_to_mm(o.holder_displacement); }},
+};
+
+/// Values of a table by the name of their column.
+class Rows {
+public:
+  explicit Rows(const TimeSeries& table) : table_(table) {}
+  double operator()(std::size_t row, const char* name) const {
+    const auto found = std::find(table_.columns.begin(), table_.columns.end(), name);
+    return table_.value(row, static_cast<std::size_t>(found - table_.columns.begin()));
+  }
+
+private:
+  const TimeSeries& table_;
+};
+
+} // namespace
+
+std::vector<std::string> observation_columns() {
+  std::vector<std::string> names;
+  for (const auto& column : columns) names.emplace_back(column.name);
+  return names;
+}
+
+std::vector<double> observation_row(const Observation& seen) {
+  std::vector<double> values;
+  for (const auto& column : columns) values.push_back(column.value(seen));
+  return values;
+}
+
+std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_per_period) {
+  const Rows value(table);
+  const auto length = static_cast<std::size_t>(steps_per_period);
+  const auto stored = [&](std::size_t rows_done) {
+    return rows_done == 0
+               ? 0.0
+               : value(rows_done - 1, "kinetic_energy_uJ") + value(rows_done - 1, "elastic_energy_uJ");
+  };
+  std::vector<PeriodSummary> periods;
+  // A table may begin inside a run; the energy before a period is that of the row before it, or rest.
+  std::size_t first = 0;
+  while (first < table.rows() && table.steps[first] != 1 &&
+         (first == 0 || (table.steps[first] - 1) % steps_per_period != 0))
+    ++first;
+  for (std::size_t begin = first; begin + length <= table.rows(); begin += length) {
+    const auto mean = [&](const char* name) {
+      double sum = 0;
+      for (std::size_t row = begin; row < begin + length; ++row) sum += value(row, name);
+      return sum / steps_per_period;
+    };
+    const auto extremes = [&](const char* name) {
+      std::pair<double, double> result{value(begin, name), value(begin, name)};
+      for (std::size_t row = begin; row < begin + length; ++row) {
+        result.first = std::min(result.first, value(row, name));
+        result.second = std::max(result.second, value(row, name));
+      }
+      return result;
+    };
+    PeriodSummary period;
+    period.period = (table.steps[begin] - 1) / steps_per_period + 1;
+    period.outflow_l_per_min = mean("outflow_l_per_min");
+    period.inflow_l_per_min = mean("inflow_l_per_min");
+    const auto [lowest, highest] = extremes("outflow_l_per_min");
+    period.spread_l_per_min = highest - lowest;
+    const double holder = mean("holder_power_mW"), opening = mean("opening_power_mW");
+    period.input_power_mW = holder + std::max(opening, 0.0);
+    const double duration =
+        value(begin + length - 1, "time_s") - (begin == 0 ? 0.0 : value(begin - 1, "time_s"));
+    const double growth = mW_per_uJ_per_s * (stored(begin + length) - stored(begin)) / duration;
+    const double gap = holder + opening - mean("viscous_power_mW") - mean("stabilisation_power_mW") -
+                       mean("damping_power_mW") - mean("carried_power_mW") - growth;
+    period.energy_gap = period.input_power_mW != 0 ? gap / period.input_power_mW : 0.0;
+    period.speed_max_cm_per_s = extremes("speed_max_cm_per_s").second;
+    period.clearance_min_mm = extremes("clearance_min_mm").first;
+    periods.push_back(period);
+  }
+  return periods;
+}
+
+} // namespace undula

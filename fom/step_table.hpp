@@ -1,0 +1,32 @@
+// The time series of a run: one row of surface units per step, and what a period of it says.
+#pragma once
+
+#include "fom/io/time_series.hpp"
+#include "fom/observables.hpp"
+
+namespace undula {
+
+/// Columns of time_series.csv, without "step".
+std::vector<std::string> observation_columns();
+
+/// One value per column.
+std::vector<double> observation_row(const Observation& seen);
+
+/// What one period comes to. Flows in l/min.
+struct PeriodSummary {
+  int period = 0;               ///< from 1
+  double outflow_l_per_min = 0; ///< mean
+  double inflow_l_per_min = 0;  ///< mean
+  double spread_l_per_min = 0;  ///< highest minus lowest outflow
+  double input_power_mW = 0;    ///< mean power of the holder, and of the openings where they drive
+  /// (holder + opening - viscous - stabilisation - damping - carried - growth of kinetic and elastic energy)
+  /// as a part of the input power: what the time scheme dissipates, and errors. 0 without input.
+  double energy_gap = 0;
+  double speed_max_cm_per_s = 0;
+  double clearance_min_mm = 0;
+};
+
+/// The complete periods of a table with observation_columns.
+std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_per_period);
+
+} // namespace undula
