@@ -25,6 +25,17 @@ Eigen::VectorXd loads_at(const Discretisation<dim>& disc, const Operators<dim>& 
   return load;
 }
 
+/// This rank's share of convection(b) x; nothing in Stokes flow.
+template <int dim>
+Eigen::VectorXd convection_of(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                              const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
+  Eigen::VectorXd convection = Eigen::VectorXd::Zero(x.size());
+  if (disc.problem.flow == FlowModel::navier_stokes)
+    visit_convection(disc, operators, b,
+                     [&](int row, int column, double value) { convection[row] += value * x[column]; });
+  return convection;
+}
+
 template <int dim>
 double imposed_fluid_value(const ConstrainedUnknown<dim>& constrained, double t) {
   if (!constrained.condition || !constrained.condition->velocity) return 0.0;
@@ -113,20 +124,25 @@ void TimeStepper<dim>::advance(State& state) {
 }
 
 template <int dim>
-EnergyTerms TimeStepper<dim>::energy(const State& state) const {
+Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
   const auto alpha = bdf_coefficients(scheme_, state.step);
   const auto& x = state.x[0];
   const Eigen::VectorXd rate = (alpha[0] * x + alpha[1] * state.x[1] + alpha[2] * older_x_) / dt_;
+  Eigen::VectorXd sum = operators_.mass * rate + operators_.physical * x + operators_.stabilisation * x +
+                        operators_.damping * x + operators_.stiffness * state.d[0] +
+                        convection_of(disc_, operators_, convecting_, x);
+  sum_over_ranks(operators_.comm, sum);
+  return sum - loads_at(disc_, operators_, state.time);
+}
+
+template <int dim>
+EnergyTerms TimeStepper<dim>::energy(const State& state) const {
+  const auto& x = state.x[0];
   const Eigen::VectorXd physical = operators_.physical * x, penalties = operators_.stabilisation * x,
                         damping = operators_.damping * x, elastic = operators_.stiffness * state.d[0];
-  Eigen::VectorXd convection = Eigen::VectorXd::Zero(x.size());
-  if (disc_.problem.flow == FlowModel::navier_stokes)
-    visit_convection(disc_, operators_, convecting_,
-                     [&](int row, int column, double value) { convection[row] += value * x[column]; });
-  Eigen::VectorXd reaction = operators_.mass * rate + physical + penalties + damping + elastic + convection;
-  sum_over_ranks(operators_.comm, reaction);
+  const Eigen::VectorXd convection = convection_of(disc_, operators_, convecting_, x);
+  const Eigen::VectorXd reaction = residual(state);
   const Eigen::VectorXd load = loads_at(disc_, operators_, state.time);
-  reaction -= load;
 
   Eigen::VectorXd sums(6);
   sums << x.dot(physical), x.dot(penalties), x.dot(damping), 0.5 * x.dot(operators_.mass * x),
@@ -172,8 +188,18 @@ int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operator
                       "a time-dependent run, or more iterations");
 }
 
+template <int dim>
+Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                                const Eigen::VectorXd& x) {
+  Eigen::VectorXd sum = operators.physical * x + operators.stabilisation * x + operators.damping * x +
+                        operators.stiffness * x + convection_of(disc, operators, x, x);
+  sum_over_ranks(operators.comm, sum);
+  return sum - loads_at(disc, operators, 0.0);
+}
+
 template State initial_state(const Discretisation<2>&);
 template class TimeStepper<2>;
 template int solve_steady(const Discretisation<2>&, const Operators<2>&, double, int, PhaseTimer&, Eigen::VectorXd&);
+template Eigen::VectorXd steady_residual(const Discretisation<2>&, const Operators<2>&, const Eigen::VectorXd&);
 
 } // namespace undula

@@ -50,11 +50,14 @@ public:
   /// Terms of the step that ended in `state` (state.step >= 1).
   EnergyTerms energy(const State& state) const;
 
+  /// What is left over of every equation of that step: zero but in the rows of imposed unknowns, where it is the
+  /// generalised force that imposes them. Natural order, complete on every rank. Collective.
+  Eigen::VectorXd residual(const State& state) const;
+
   double dt() const { return dt_; }
   LinearSystem<dim>& system() { return system_; }
 
 private:
-  Eigen::VectorXd loads(double t) const;
   void impose(const State& state, std::array<double, 3> alpha, double t, Eigen::VectorXd& rhs) const;
 
   const Discretisation<dim>& disc_;
@@ -73,5 +76,10 @@ private:
 template <int dim>
 int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
                  int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x);
+
+/// TimeStepper::residual for a steady state, at time 0. Collective.
+template <int dim>
+Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                                const Eigen::VectorXd& x);
 
 } // namespace undula
