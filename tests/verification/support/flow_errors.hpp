@@ -1,0 +1,51 @@
+// Errors of a discrete flow against a manufactured one over the fluid, uncut and cut parts alike.
+#pragma once
+
+#include <cmath>
+
+#include "fom/assembly/part_quadrature.hpp"
+#include "tests/verification/support/manufactured.hpp"
+
+namespace undula::verification {
+
+/// Relative errors: divided by the norm of the exact field. Pressures are compared up to a constant.
+struct FlowErrors {
+  double velocity_l2 = 0;
+  double velocity_h1 = 0; ///< seminorm
+  double pressure_l2 = 0;
+};
+
+inline FlowErrors flow_errors(const Discretisation<2>& disc, const Eigen::VectorXd& x,
+                              const ManufacturedFlow& flow) {
+  const auto rule = reference_rule<2>(6);
+  double volume = 0, mean_error = 0, mean_exact = 0;
+  double velocity = 0, gradient = 0, pressure = 0, velocity_norm = 0, gradient_norm = 0, pressure_norm = 0;
+  for (int part = 0; part < static_cast<int>(disc.cut.parts.size()); ++part) {
+    const int cell = disc.cut.parts[part].cell;
+    const auto& nodes = disc.fluid_nodes.part_dofs[part];
+    Eigen::Matrix<double, 3, 3> values; // column per vertex: u, v, p
+    for (int i = 0; i < 3; ++i) values.col(i) = x.segment<3>(disc.velocity_unknown(nodes[i], 0));
+    const Eigen::Matrix2d discrete_gradient =
+        values.topRows<2>() * barycentric_gradients(disc.cut.mesh, cell).transpose();
+    for_each_point(disc, part, rule, [&](const Point<2>& point, double w) {
+      const auto exact = sample(flow, point);
+      const Eigen::Vector3d field = values * barycentric_coordinates(disc.cut.mesh, cell, point);
+      const double difference = field[2] - exact.pressure;
+      volume += w;
+      mean_error += w * difference;
+      mean_exact += w * exact.pressure;
+      velocity += w * (field.head<2>() - exact.velocity).squaredNorm();
+      velocity_norm += w * exact.velocity.squaredNorm();
+      gradient += w * (discrete_gradient - exact.gradient).squaredNorm();
+      gradient_norm += w * exact.gradient.squaredNorm();
+      pressure += w * difference * difference;
+      pressure_norm += w * exact.pressure * exact.pressure;
+    });
+  }
+  pressure -= mean_error * mean_error / volume;
+  pressure_norm -= mean_exact * mean_exact / volume;
+  return {std::sqrt(velocity / velocity_norm), std::sqrt(gradient / gradient_norm),
+          std::sqrt(pressure / pressure_norm)};
+}
+
+} // namespace undula::verification
