@@ -131,16 +131,18 @@ bool plot_field(const std::filesystem::path& picture, const std::string& title, 
   const std::string last_triangle = std::to_string(field.triangles.size() - 1);
   std::vector<std::string> items = {"data index 0:" + last_triangle + " using 1:2:3 with pm3d notitle"};
 
-  // 2. Outlines, one block, over the triangles.
+  // 2. Outlines over the triangles, each a block of its own: lines in one block that have equal numbers of points
+  // would be joined as a grid.
   if (!outlines.empty()) {
-    data += "# outlines: r (cm), z (cm)\n";
     for (const auto& outline : outlines) {
+      data += "# outline: r (cm), z (cm)\n";
       for (const Eigen::Vector2d& x : outline) {
         data += row(x[0], x[1]);
       }
-      data += "\n";
+      data += "\n\n";
     }
-    items.push_back("data index " + std::to_string(field.triangles.size()) +
+    items.push_back("data index " + std::to_string(field.triangles.size()) + ":" +
+                    std::to_string(field.triangles.size() + outlines.size() - 1) +
                     " using 1:2:(0) with lines lc rgb 'black' lw 1 notitle");
   }
 

@@ -9,7 +9,8 @@ namespace undula {
 
 namespace {
 
-/// Sum of all constant operators with the pattern of the whole, so that the pattern never depends on the factors.
+/// Sum of all constant operators with the pattern of the whole, so that the pattern never depends on the
+/// factors.
 template <int dim>
 SparseMatrix constant_part(const Operators<dim>& operators, const SystemFactors& factors) {
   SparseMatrix sum = operators.physical + operators.stabilisation;
@@ -22,8 +23,8 @@ SparseMatrix constant_part(const Operators<dim>& operators, const SystemFactors&
 } // namespace
 
 template <int dim>
-LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators, int factor_every,
-                                PhaseTimer& timer)
+LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                                int factor_every, PhaseTimer& timer)
     : disc_(disc), operators_(operators), timer_(timer), factor_every_(factor_every) {
   const auto scope = timer_.measure("assemble");
   const auto& index = operators.ownership.petsc_index;
@@ -39,7 +40,8 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
     columns.push_back(index[column]);
   };
   for (int row = 0; row < constant_.outerSize(); ++row)
-    for (SparseMatrix::InnerIterator entry(constant_, row); entry; ++entry) add(row, static_cast<int>(entry.col()));
+    for (SparseMatrix::InnerIterator entry(constant_, row); entry; ++entry)
+      add(row, static_cast<int>(entry.col()));
   for (int unknown = 0; unknown < size; ++unknown)
     if (operators.ownership.owner[unknown] == rank) {
       // A diagonal entry for every unknown: 1 for constrained ones, 0 (but in the pattern) for the others.
@@ -55,7 +57,8 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(MatCreate(operators.comm, matrix_.out()), "creating the system matrix");
   check_petsc(MatSetSizes(matrix_.get(), own, own, size, size), "sizing the system matrix");
   check_petsc(MatSetType(matrix_.get(), MATAIJ), "typing the system matrix");
-  check_petsc(MatSetPreallocationCOO(matrix_.get(), static_cast<PetscCount>(rows.size()), rows.data(), columns.data()),
+  check_petsc(MatSetPreallocationCOO(matrix_.get(), static_cast<PetscCount>(rows.size()), rows.data(),
+                                     columns.data()),
               "preallocating the system matrix");
   check_petsc(MatCreateVecs(matrix_.get(), solution_.out(), rhs_.out()), "creating vectors");
   check_petsc(VecScatterCreateToAll(solution_.get(), gather_.out(), gathered_.out()), "creating the gather");
@@ -80,7 +83,8 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
     std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), values_.begin());
     auto value = values_.begin() + constant_.nonZeros();
     for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
-      if (operators_.ownership.owner[unknown] == operators_.rank) *value++ = disc_.is_constrained[unknown] ? 1.0 : 0.0;
+      if (operators_.ownership.owner[unknown] == operators_.rank)
+        *value++ = disc_.is_constrained[unknown] ? 1.0 : 0.0;
     factors_ = factors;
     factored_at_ = -1;
   }
@@ -100,14 +104,17 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
     double* values = nullptr;
     check_petsc(VecGetArray(rhs_.get(), &values), "writing the right-hand side");
     for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
-      if (operators_.ownership.owner[unknown] == operators_.rank) values[index[unknown] - first] = rhs[unknown];
+      if (operators_.ownership.owner[unknown] == operators_.rank)
+        values[index[unknown] - first] = rhs[unknown];
     check_petsc(VecRestoreArray(rhs_.get(), &values), "writing the right-hand side");
   }
   {
     const auto scope = timer_.measure("factor");
-    const bool reuse = factored_at_ >= 0 && step % factor_every_ != 0;
-    check_petsc(KSPSetReusePreconditioner(solver_.get(), reuse ? PETSC_TRUE : PETSC_FALSE), "reusing the factors");
-    // Without new operators KSPSetUp would leave the factorisation to KSPSolve, and its time to phase "solve".
+    const bool reuse = factored_at_ >= 0 && (step - 1) % factor_every_ != 0;
+    check_petsc(KSPSetReusePreconditioner(solver_.get(), reuse ? PETSC_TRUE : PETSC_FALSE),
+                "reusing the factors");
+    // Without new operators KSPSetUp would leave the factorisation to KSPSolve, and its time to phase
+    // "solve".
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
@@ -116,8 +123,11 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
   check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
-  check_petsc(VecScatterBegin(gather_.get(), solution_.get(), gathered_.get(), INSERT_VALUES, SCATTER_FORWARD), "gathering");
-  check_petsc(VecScatterEnd(gather_.get(), solution_.get(), gathered_.get(), INSERT_VALUES, SCATTER_FORWARD), "gathering");
+  check_petsc(
+      VecScatterBegin(gather_.get(), solution_.get(), gathered_.get(), INSERT_VALUES, SCATTER_FORWARD),
+      "gathering");
+  check_petsc(VecScatterEnd(gather_.get(), solution_.get(), gathered_.get(), INSERT_VALUES, SCATTER_FORWARD),
+              "gathering");
   Eigen::VectorXd x(disc_.unknowns());
   const double* values = nullptr;
   check_petsc(VecGetArrayRead(gathered_.get(), &values), "reading the solution");
@@ -125,10 +135,11 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
   check_petsc(VecRestoreArrayRead(gathered_.get(), &values), "reading the solution");
   // Every rank holds the same x and the same reason, so all of them throw or none does.
   if (reason < 0 || !x.allFinite())
-    throw NumericsError(reason < 0 ? "the linear solver stopped with PETSc reason " + std::to_string(reason)
-                                   : std::string("the solution of the linear system is not finite"),
-                        "step " + std::to_string(step),
-                        "a smaller time step (time.steps_per_period), a smaller stroke, or -fsi_ solver options");
+    throw NumericsError(
+        reason < 0 ? "the linear solver stopped with PETSc reason " + std::to_string(reason)
+                   : std::string("the solution of the linear system is not finite"),
+        "step " + std::to_string(step),
+        "a smaller time step (time.steps_per_period), a smaller stroke, or -fsi_ solver options");
   return x;
 }
 

@@ -16,20 +16,23 @@ struct SystemFactors {
   bool operator==(const SystemFactors&) const = default;
 };
 
-/// Rows of constrained unknowns are replaced by the identity. Options of the solver are open to the user under
-/// the prefix `-fsi_`. The symbolic factorisation is made once.
+/// Rows of constrained unknowns are replaced by the identity. Options of the solver are open to the user
+/// under the prefix `-fsi_`. The symbolic factorisation is made once.
 template <int dim>
 class LinearSystem {
 public:
-  /// Collective. `factor_every` > 1 keeps a numerical factorisation for that many steps and corrects by GMRES.
-  LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators, int factor_every, PhaseTimer& timer);
+  /// Collective. `factor_every` > 1 keeps a numerical factorisation for that many steps and corrects by
+  /// GMRES.
+  LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators, int factor_every,
+               PhaseTimer& timer);
 
   /// Sets the values for convecting field `b` (null: no convection). Phase "assemble". Collective.
   void assemble(const SystemFactors& factors, const Eigen::VectorXd* b);
 
   /// Solves with the natural-order right-hand side (complete on every rank), solution complete on every rank.
   /// Phases "factor" and "solve". Throws NumericsError on every rank if the solver fails or x is not finite.
-  /// `step` decides when to factor anew, so that a restart at a multiple of factor_every repeats the run.
+  /// `step` decides when to factor anew: the first step after a multiple of factor_every does, so that a
+  /// restart from a state at such a multiple repeats the run.
   Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step);
 
   Mat matrix() const { return matrix_.get(); }
@@ -40,9 +43,9 @@ private:
   PhaseTimer& timer_;
   int factor_every_;
   int factored_at_ = -1;
-  std::vector<double> values_;   ///< constant entries, then convection entries
+  std::vector<double> values_; ///< constant entries, then convection entries
   std::size_t constant_entries_ = 0;
-  SparseMatrix constant_;        ///< for the current factors
+  SparseMatrix constant_; ///< for the current factors
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_;

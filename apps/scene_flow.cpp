@@ -1,0 +1,26 @@
+#include "apps/scene_flow.hpp"
+
+#include "base/units.hpp"
+
+namespace undula {
+
+FlowAtHead flow_of_scene(PreparedScene& prepared, const Scene& scene, const std::function<void()>& on_step) {
+  return [&prepared, scene, &on_step](double head_mmHg) {
+    Scene point = scene;
+    point.operating_point.head = units::pressure_from_mmHg(head_mmHg);
+    set_operating_point(prepared, point);
+    const int first_averaged = (point.time.periods - 1) * point.time.steps_per_period + 1;
+    double sum = 0;
+    State state = initial_state(prepared.disc);
+    PhaseTimer timer;
+    march(prepared, point, state, timer, [&](const State& now, const Observation& seen) {
+      if (now.step >= first_averaged) {
+        sum += seen.outflow;
+      }
+      on_step();
+    });
+    return units::flow_to_l_per_min(sum / point.time.steps_per_period);
+  };
+}
+
+} // namespace undula

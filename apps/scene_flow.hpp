@@ -1,0 +1,18 @@
+// The full-order model as a function of the head.
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+
+#include "apps/validation.hpp"
+#include "fom/simulation.hpp"
+
+namespace undula {
+
+/// Runs the scene from rest at each head, on meshes and operators prepared once, and takes the mean outflow
+/// of its last period. `prepared` and `on_step` (called after every step) must outlive the function. Calls
+/// are collective and throw NumericsError on every rank.
+FlowAtHead flow_of_scene(PreparedScene& prepared, const Scene& scene, const std::function<void()>& on_step);
+
+} // namespace undula
