@@ -1,7 +1,9 @@
-// undula validate model.h5 --data measured.csv: the benchmark's algorithm. Read the measured curve, extract
-// points, run the model at their heads, average over the last period, plot, 2-norm of the errors.
+// undula validate model.h5|scene.toml --data measured.csv: the benchmark's algorithm. Read the measured
+// curve, extract points, run the model at their heads, average over the last period, plot, 2-norm of the
+// errors.
 //   undula validate data/models/wave_pump_fixed.h5 --frequency 120 --stroke 0.53 --head 50,55,60
 //     --data data/measured/corwave_120hz_0.53mm.csv --plot validation.png
+//   undula validate data/scenes/wave_pump_fixed.toml --points 3 --data data/measured/corwave_120hz_0.53mm.csv
 #include <spdlog/spdlog.h>
 
 #include <array>
@@ -12,10 +14,17 @@
 #include "apps/commands.hpp"
 #include "apps/gnuplot.hpp"
 #include "apps/head_list.hpp"
+#include "apps/mpi_session.hpp"
 #include "apps/plots.hpp"
 #include "apps/progress.hpp"
+#include "apps/scene_flow.hpp"
 #include "apps/text_table.hpp"
 #include "apps/validation.hpp"
+#include "base/error.hpp"
+#include "base/units.hpp"
+#include "fom/io/text_file.hpp"
+#include "fom/root_rank.hpp"
+#include "fom/scene/scene_file.hpp"
 #include "hq_curve.hpp"
 #include "model.hpp"
 
@@ -24,13 +33,21 @@ namespace {
 
 struct ValidateOptions {
   std::string model;
+  std::vector<std::string> overrides;
   std::string data;
-  double frequency_Hz = 0;
-  double stroke_mm = 0;
+  std::optional<double> frequency_Hz;
+  std::optional<double> stroke_mm;
   std::string heads;
   int points = 3;
   std::string picture;
   bool json = false;
+  std::vector<std::string> petsc;
+};
+
+/// What is compared, and at which heads.
+struct Comparison {
+  MeasuredCurve curve;
+  std::vector<double> heads;
 };
 
 /// The reduced model as a function of the head; `frequency` and `stroke` stay as asked.
@@ -93,30 +110,52 @@ void plot(const std::string& picture, const MeasuredCurve& curve, const Validati
                 sets);
 }
 
-void validate_model(const ValidateOptions& options) {
-  // 1. Read the measured curve and choose the heads.
+Comparison read_comparison(const ValidateOptions& options) {
   if (!options.picture.empty()) {
     check_picture_name(options.picture);
   }
-  const MeasuredCurve curve = read_measured_curve(options.data);
-  const std::vector<double> heads =
-      options.heads.empty() ? even_heads(curve.head_mmHg.front(), curve.head_mmHg.back(), options.points)
-                            : parse_heads(options.heads);
+  Comparison comparison{read_measured_curve(options.data), {}};
+  const auto& measured = comparison.curve.head_mmHg;
+  comparison.heads = options.heads.empty() ? even_heads(measured.front(), measured.back(), options.points)
+                                           : parse_heads(options.heads);
+  extract_points(comparison.curve, comparison.heads); // refuses heads outside the data
+  return comparison;
+}
+
+void report(const ValidateOptions& options, const MeasuredCurve& curve, const Validation& validation,
+            double frequency_Hz, double stroke_mm) {
+  std::cout << (options.json ? json_text(validation, curve.fit) : table_text(validation));
+  if (!options.picture.empty()) {
+    plot(options.picture, curve, validation,
+         shortest(frequency_Hz) + " Hz, stroke " + shortest(stroke_mm) + " mm");
+  }
+}
+
+void validate_model(const ValidateOptions& options) {
+  // 1. Read the measured curve and choose the heads.
+  const Comparison comparison = read_comparison(options);
+  if (!options.overrides.empty() || !options.petsc.empty()) {
+    throw InputError("options of scenes do not go with a reduced model", options.model,
+                     "a scene (.toml) with --set and options for PETSc", "the command line");
+  }
+  if (!options.frequency_Hz || !options.stroke_mm) {
+    throw CLI::RequiredError(options.frequency_Hz ? "--stroke" : "--frequency");
+  }
 
   // 2. The model.
   const rom::Model model = rom::load_model(options.model);
   for (const std::string& line :
-       rom::outside_training_box(model.box, options.frequency_Hz, options.stroke_mm, heads)) {
+       rom::outside_training_box(model.box, *options.frequency_Hz, *options.stroke_mm, comparison.heads)) {
     spdlog::warn("{}", line);
   }
 
   // 3. Run it at those heads; every flow is a mean over the last period.
-  const FlowAtHead flow_at = flow_of_model(model, options.frequency_Hz, options.stroke_mm);
+  const FlowAtHead flow_at = flow_of_model(model, *options.frequency_Hz, *options.stroke_mm);
   Validation validation;
   {
-    Progress progress("validate", static_cast<long>(heads.size()));
+    Progress progress("validate", static_cast<long>(comparison.heads.size()));
     long done = 0;
-    validation = validate(curve, heads, [&](double head) {
+    validation = validate(comparison.curve, comparison.heads, [&](double head) {
       const double flow = flow_at(head);
       progress.update(++done);
       return flow;
@@ -124,11 +163,50 @@ void validate_model(const ValidateOptions& options) {
   }
 
   // 4. Compare.
-  std::cout << (options.json ? json_text(validation, curve.fit) : table_text(validation));
-  if (!options.picture.empty()) {
-    plot(options.picture, curve, validation,
-         shortest(options.frequency_Hz) + " Hz, stroke " + shortest(options.stroke_mm) + " mm");
+  report(options, comparison.curve, validation, *options.frequency_Hz, *options.stroke_mm);
+}
+
+void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
+  // 1. Read the scene and the measured curve; choose the heads.
+  const Comparison comparison = read_comparison(options);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.frequency_Hz) {
+    overrides.push_back("operating_point.frequency_Hz=" + exact_number(*options.frequency_Hz));
   }
+  if (options.stroke_mm) {
+    overrides.push_back("operating_point.stroke_mm=" + exact_number(*options.stroke_mm));
+  }
+  const Scene scene = read_scene(options.model, overrides);
+
+  // 2. Meshes and operators, shared by all heads.
+  PhaseTimer timer;
+  const auto prepared = prepare_scene(scene, comm, timer);
+
+  // 3. Run it at those heads; every flow is a mean over the last period.
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  Validation validation;
+  {
+    const long steps = static_cast<long>(scene.time.periods) * scene.time.steps_per_period;
+    std::optional<Progress> progress;
+    if (rank == 0) {
+      progress.emplace("validate", steps * static_cast<long>(comparison.heads.size()));
+    }
+    long done = 0;
+    const std::function<void()> on_step = [&] {
+      ++done;
+      if (progress) {
+        progress->update(done);
+      }
+    };
+    validation = validate(comparison.curve, comparison.heads, flow_of_scene(*prepared, scene, on_step));
+  }
+
+  // 4. Compare.
+  on_root(comm, [&] {
+    report(options, comparison.curve, validation, scene.operating_point.frequency,
+           units::length_to_mm(scene.operating_point.stroke));
+  });
 }
 
 } // namespace
@@ -136,10 +214,14 @@ void validate_model(const ValidateOptions& options) {
 void add_validate_command(CLI::App& app) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = app.add_subcommand("validate", "Compare a model with a measured head-flow curve");
-  command->add_option("model", options->model, "model file (HDF5) made by undula train")->required();
+  command
+      ->add_option("model", options->model,
+                   "model file (HDF5) made by undula train, or a scene (.toml) for the full-order model")
+      ->required();
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)")->required();
-  command->add_option("--frequency", options->frequency_Hz, "frequency of the actuator, Hz")->required();
-  command->add_option("--stroke", options->stroke_mm, "amplitude of the actuator, mm")->required();
+  command->add_option("--frequency", options->frequency_Hz,
+                      "frequency of the actuator, Hz; of a scene: its own");
+  command->add_option("--stroke", options->stroke_mm, "amplitude of the actuator, mm; of a scene: its own");
   CLI::Option* heads =
       command->add_option("--head", options->heads, "heads in mmHg, low:high:step or a list with commas");
   command->add_option("--points", options->points, "number of heads, spread over the measured range")
@@ -148,7 +230,19 @@ void add_validate_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");
-  command->callback([options] { validate_model(*options); });
+  command
+      ->add_option("--set", options->overrides,
+                   "of a scene: override a key, section.key=value, may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("petsc", options->petsc, "of a scene: options for PETSc, after --");
+  command->callback([options] {
+    if (std::filesystem::path(options->model).extension() == ".toml") {
+      run_parallel(options->petsc, [&](MPI_Comm comm) { validate_scene(*options, comm); });
+    } else {
+      validate_model(*options);
+    }
+  });
 }
 
 } // namespace undula
