@@ -17,7 +17,8 @@ using ColumnSparse = Eigen::SparseMatrix<double>;
 /// Rows and columns `unknowns` of a matrix.
 ColumnSparse submatrix(const SparseMatrix& matrix, const std::vector<int>& unknowns) {
   std::vector<int> place(static_cast<std::size_t>(matrix.rows()), -1);
-  for (std::size_t i = 0; i < unknowns.size(); ++i) place[static_cast<std::size_t>(unknowns[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    place[static_cast<std::size_t>(unknowns[i])] = static_cast<int>(i);
   Triplets entries;
   for (const int row : unknowns)
     for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
@@ -44,7 +45,8 @@ Eigen::MatrixXd gather(std::span<const RunRecord> runs, const char* field, const
   for (const auto& run : runs) {
     Eigen::MatrixXd values = run.snapshots.at(field).values;
     if (subtract) subtract(run, values);
-    const double norm = std::sqrt((values.transpose() * (inner * values)).trace() / static_cast<double>(values.cols()));
+    const double norm =
+        std::sqrt((values.transpose() * (inner * values)).trace() / static_cast<double>(values.cols()));
     if (norm > 0) values /= norm;
     all.middleCols(next, values.cols()) = values;
     next += values.cols();
@@ -53,15 +55,16 @@ Eigen::MatrixXd gather(std::span<const RunRecord> runs, const char* field, const
 }
 
 /// Pressure columns of the velocity rows: b(v, q).
-Eigen::MatrixXd supremizers(const PreparedScene& prepared, double angular_frequency, const Eigen::MatrixXd& pressure) {
+Eigen::MatrixXd supremizers(const PreparedScene& prepared, double angular_frequency,
+                            const Eigen::MatrixXd& pressure) {
   const auto& disc = prepared.disc;
   std::vector<int> free;
   for (const int unknown : velocity_unknowns(disc))
     if (!disc.is_constrained[static_cast<std::size_t>(unknown)]) free.push_back(unknown);
   const SparseMatrix stiffness = prepared.operators.physical + prepared.operators.stabilisation;
   const ColumnSparse block = submatrix(stiffness, free);
-  const ColumnSparse inner =
-      0.5 * (block + ColumnSparse(block.transpose())) + angular_frequency * submatrix(prepared.operators.mass, free);
+  const ColumnSparse inner = 0.5 * (block + ColumnSparse(block.transpose())) +
+                             angular_frequency * submatrix(prepared.operators.mass, free);
   Eigen::SimplicialLDLT<ColumnSparse> factors(inner);
   if (factors.info() != Eigen::Success)
     throw NumericsError("the inner product of the supremizers could not be factored", "training",
@@ -88,7 +91,8 @@ void orthonormalise(Eigen::MatrixXd& columns, Eigen::Index first, const SparseMa
 
 Eigen::VectorXd imposed_lifting(const Discretisation<2>& disc) {
   Eigen::VectorXd lifting = Eigen::VectorXd::Zero(disc.unknowns());
-  for (int unknown = disc.fluid_unknowns() + 1; unknown < disc.unknowns(); unknown += 2) lifting[unknown] = 1.0;
+  for (int unknown = disc.fluid_unknowns() + 1; unknown < disc.unknowns(); unknown += 2)
+    lifting[unknown] = 1.0;
   return lifting;
 }
 

@@ -23,8 +23,8 @@ NextPoint claim_next(std::span<const OperatingPoint> plan, const CampaignStore& 
 
 } // namespace
 
-void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, const CampaignStore& store, MPI_Comm world,
-                  const CampaignProgress& progress) {
+void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, const CampaignStore& store,
+                  MPI_Comm world, const CampaignProgress& progress) {
   int world_rank = 0;
   MPI_Comm_rank(world, &world_rank);
   MPI_Comm group = MPI_COMM_NULL;
@@ -32,7 +32,8 @@ void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, cons
   int rank = 0;
   MPI_Comm_rank(group, &rank);
 
-  std::unique_ptr<PreparedScene> prepared; // made when the first point is claimed: a finished plan costs nothing
+  std::unique_ptr<PreparedScene>
+      prepared; // made when the first point is claimed: a finished plan costs nothing
   PhaseTimer timer;
   for (;;) {
     auto next = rank == 0 ? claim_next(plan, store) : NextPoint{};

@@ -32,8 +32,8 @@ std::vector<int> kept_velocity(const rom::Operators& full, int velocity_modes, i
 
 } // namespace
 
-ProjectedRun project_run(const PreparedScene& prepared, const Scene& scene, const Bases& bases, const RunRecord& run,
-                         bool held_out) {
+ProjectedRun project_run(const PreparedScene& prepared, const Scene& scene, const Bases& bases,
+                         const RunRecord& run, bool held_out) {
   const auto& disc = prepared.disc;
   ProjectedRun projected;
   projected.point = run.point;
@@ -78,8 +78,8 @@ ProjectedRun project_run(const PreparedScene& prepared, const Scene& scene, cons
   return projected;
 }
 
-RunErrors judge_run(const rom::Operators& full, int velocity_modes, int pressure_modes, int displacement_modes,
-                    int steps_per_period, const ProjectedRun& run) {
+RunErrors judge_run(const rom::Operators& full, int velocity_modes, int pressure_modes,
+                    int displacement_modes, int steps_per_period, const ProjectedRun& run) {
   const auto reduced = rom::restrict_operators(full, velocity_modes, pressure_modes, displacement_modes);
   const auto begin = std::chrono::steady_clock::now();
   rom::PeriodicOptions options;
@@ -94,14 +94,14 @@ RunErrors judge_run(const rom::Operators& full, int velocity_modes, int pressure
   if (!state.converged) return errors;
   const Eigen::MatrixXd velocity = solver.at_steps(state.velocity);
   const Eigen::MatrixXd displacement = solver.at_steps(state.displacement);
-  const Eigen::MatrixXd exact =
-      run.velocity(kept_velocity(full, velocity_modes, pressure_modes), Eigen::all);
+  const Eigen::MatrixXd exact = run.velocity(kept_velocity(full, velocity_modes, pressure_modes), Eigen::all);
 
   double error = 0, best = 0;
   Eigen::MatrixXd probes(run.probes.rows(), run.probes.cols());
   for (Eigen::Index k = 0; k < exact.cols(); ++k) {
     const int step = run.steps[static_cast<std::size_t>(k)];
-    // The basis is orthonormal in the kinetic energy: |u - Phi a|^2 = |u|^2 - |Phi^T M u|^2 + |Phi^T M u - a|^2.
+    // The basis is orthonormal in the kinetic energy: |u - Phi a|^2 = |u|^2 - |Phi^T M u|^2 + |Phi^T M u -
+    // a|^2.
     const double outside = run.velocity_norm[k] - exact.col(k).squaredNorm();
     best += outside;
     error += outside + (exact.col(k) - velocity.col(step)).squaredNorm();
@@ -117,10 +117,12 @@ RunErrors judge_run(const rom::Operators& full, int velocity_modes, int pressure
   return errors;
 }
 
-std::vector<ModeRow> mode_table(const rom::Operators& full, int steps_per_period, std::span<const ProjectedRun> runs,
-                                std::span<const double> fractions) {
+std::vector<ModeRow> mode_table(const rom::Operators& full, int steps_per_period,
+                                std::span<const ProjectedRun> runs, std::span<const double> fractions) {
   std::vector<ModeRow> table;
-  const auto part = [](double fraction, int modes) { return std::max(1, static_cast<int>(std::lround(fraction * modes))); };
+  const auto part = [](double fraction, int modes) {
+    return std::max(1, static_cast<int>(std::lround(fraction * modes)));
+  };
   for (const double fraction : fractions) {
     ModeRow row;
     row.velocity_modes = part(fraction, full.velocity_modes - full.supremizer_modes);

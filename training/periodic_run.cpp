@@ -66,10 +66,12 @@ struct Sampler {
   }
 
   void write(const Discretisation<2>& disc, RunRecord& record) const {
-    const auto store = [&](const char* field, const char* unit, const std::vector<int>& unknowns, bool displacement) {
+    const auto store = [&](const char* field, const char* unit, const std::vector<int>& unknowns,
+                           bool displacement) {
       Snapshots snapshots;
       snapshots.unit = unit;
-      snapshots.values.resize(static_cast<Eigen::Index>(unknowns.size()), static_cast<Eigen::Index>(kept.size()));
+      snapshots.values.resize(static_cast<Eigen::Index>(unknowns.size()),
+                              static_cast<Eigen::Index>(kept.size()));
       for (std::size_t k = 0; k < kept.size(); ++k)
         snapshots.values.col(static_cast<Eigen::Index>(k)) =
             select(displacement ? kept[k].second.d[0] : kept[k].second.x[0], unknowns);
@@ -127,16 +129,25 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
   RunRecord record;
   record.point = scene.operating_point;
   TimeSeries series = empty_series();
-  Sampler sampler{scene.time.steps_per_period / scene.training.snapshots_per_period,
-                  static_cast<std::size_t>(scene.training.snapshots_per_period * scene.training.sampled_periods), {}};
+  Sampler sampler{
+      scene.time.steps_per_period / scene.training.snapshots_per_period,
+      static_cast<std::size_t>(scene.training.snapshots_per_period * scene.training.sampled_periods),
+      {}};
 
-  // Norm of kinetic energy, fluid and solid: the same share on all ranks only in sum.
-  const auto energy_norm = [&](const Eigen::VectorXd& x) {
-    Eigen::VectorXd energy(1);
-    energy[0] = x.dot(prepared.operators.mass * x);
-    sum_over_ranks(prepared.operators.comm, energy);
-    return std::sqrt(energy[0]);
+  // Velocity and displacement are each measured in the mass: a membrane that creeps by a little every period
+  // has a small velocity all along, and only its displacement tells.
+  const auto mass_norm = [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd square(1);
+    square[0] = x.dot(prepared.operators.mass * x);
+    sum_over_ranks(prepared.operators.comm, square);
+    return std::sqrt(square[0]);
   };
+  const auto relative_change = [&](const Eigen::VectorXd& now, const Eigen::VectorXd& before) {
+    return mass_norm(now - before) / std::max(mass_norm(now), 1e-300);
+  };
+  Eigen::VectorXd root_mass = prepared.operators.mass.diagonal();
+  sum_over_ranks(prepared.operators.comm, root_mass);
+  root_mass = root_mass.cwiseMax(0.0).cwiseSqrt();
 
   State state = initial_state(disc);
   std::deque<State> ends; // of the last periods, plainly marched one after the other
@@ -147,18 +158,18 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
   record.state = RunState::not_periodic;
   try {
     // One stepper for all periods: march() is called once, and extrapolation would have to interrupt it.
-    TimeStepper<2> stepper(disc, prepared.operators, scene.time.scheme, time_step(scene), scene.time.factor_every,
-                           timer);
+    TimeStepper<2> stepper(disc, prepared.operators, scene.time.scheme, time_step(scene),
+                           scene.time.factor_every, timer);
     const int ramp = static_cast<int>(std::ceil(scene.time.ramp_periods));
     for (int period = 1; period <= scene.time.periods; ++period) {
-      const Eigen::VectorXd start = state.x[0];
+      const Eigen::VectorXd start_x = state.x[0], start_d = state.d[0];
       for (int k = 0; k < scene.time.steps_per_period; ++k) {
         stepper.advance(state);
         append(series, observe(disc, prepared.operators, stepper, prepared.observation, state));
         sampler.take(state);
       }
       ++plain_periods;
-      change = energy_norm(state.x[0] - start) / std::max(energy_norm(state.x[0]), 1e-300);
+      change = std::max(relative_change(state.x[0], start_x), relative_change(state.d[0], start_d));
       if (period <= ramp) continue;
       // The sampled periods must follow one another without a jump.
       if (change < scene.training.periodic_tolerance && plain_periods >= scene.training.sampled_periods) {
@@ -182,15 +193,16 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
       ends.push_back(state);
       if (ends.size() <= extrapolation_window) continue;
       if (may_extrapolate && period + 2 <= scene.time.periods) {
-        Eigen::MatrixXd differences(disc.unknowns(), static_cast<Eigen::Index>(extrapolation_window));
-        // Root of the diagonal mass as coordinates of the kinetic-energy norm; the displacement enters through
-        // the velocity it drives.
-        Eigen::VectorXd weight = prepared.operators.mass.diagonal();
-        sum_over_ranks(prepared.operators.comm, weight);
-        weight = weight.cwiseMax(0.0).cwiseSqrt();
-        for (std::size_t i = 0; i < extrapolation_window; ++i)
-          differences.col(static_cast<Eigen::Index>(i)) =
-              weight.cwiseProduct(ends[i + 1].x[0] - ends[i].x[0]);
+        // Coordinates in which velocity and displacement weigh the same.
+        const double balance = mass_norm(state.x[0]) / std::max(mass_norm(state.d[0]), 1e-300);
+        const Eigen::Index size = disc.unknowns();
+        Eigen::MatrixXd differences(2 * size, static_cast<Eigen::Index>(extrapolation_window));
+        for (std::size_t i = 0; i < extrapolation_window; ++i) {
+          const auto column = static_cast<Eigen::Index>(i);
+          differences.col(column).head(size) = root_mass.cwiseProduct(ends[i + 1].x[0] - ends[i].x[0]);
+          differences.col(column).tail(size) =
+              balance * root_mass.cwiseProduct(ends[i + 1].d[0] - ends[i].d[0]);
+        }
         before_extrapolation = state;
         change_before = change;
         const int step = state.step;
@@ -207,7 +219,7 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
       }
     }
     if (record.state == RunState::not_periodic)
-      record.reason = "velocity still changes by " + std::to_string(change) + " over period " +
+      record.reason = "the state still changes by " + std::to_string(change) + " over period " +
                       std::to_string(scene.time.periods) + " (tolerance " +
                       std::to_string(scene.training.periodic_tolerance) + ")";
   } catch (const NumericsError& error) {
@@ -217,8 +229,7 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
   record.cycles = summarise_cycles(series, scene.time.steps_per_period);
   sampler.write(disc, record);
   for (const auto& [phase, entry] : timer.records()) record.seconds[phase] = entry.seconds;
-  record.seconds["total"] =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  record.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return record;
 }
 

@@ -6,17 +6,19 @@
 
 namespace undula {
 
-/// Reduced rank extrapolation (Mesina 1977; Sidi 1991) of states z_0..z_m, one period apart: weights gamma_0..
-/// gamma_{m-1}, sum 1, that minimise |sum gamma_i (z_{i+1} - z_i)|. The limit of the sequence is estimated by
-/// sum gamma_i z_{i+1}. Columns of `differences` are z_{i+1} - z_i in coordinates whose Euclidean norm matters.
+/// Reduced rank extrapolation (Mesina 1977; Sidi 1991) of states z_0..z_m, one period apart: weights
+/// gamma_0.. gamma_{m-1}, sum 1, that minimise |sum gamma_i (z_{i+1} - z_i)|. The limit of the sequence is
+/// estimated by sum gamma_i z_{i+1}. Columns of `differences` are z_{i+1} - z_i in coordinates whose
+/// Euclidean norm matters.
 Eigen::VectorXd extrapolation_weights(const Eigen::MatrixXd& differences);
 
-/// Marches the operating point of `scene` from rest until two successive periods agree: the change of the fluid
-/// velocity over a period, relative in the kinetic-energy norm, is below scene.training.periodic_tolerance; or for
-/// scene.time.periods periods at most. Slow modes (columns of fluid in channels, squeeze films) are shortened by
-/// extrapolation over the last periods; the record's last periods are always plain time steps. Snapshots of the
-/// last scene.training.sampled_periods periods. A NumericsError ends in a record of state `failed`.
-/// Collective over the communicator of `prepared`; the record is complete on every rank.
+/// Marches the operating point of `scene` from rest until two successive periods agree: the changes of
+/// velocity and of displacement over a period, each relative in the mass norm, are below
+/// scene.training.periodic_tolerance; or for scene.time.periods periods at most. Slow modes (columns of fluid
+/// in channels, squeeze films) are shortened by extrapolation over the last periods; the record's last
+/// periods are always plain time steps. Snapshots of the last scene.training.sampled_periods periods. A
+/// NumericsError ends in a record of state `failed`. Collective over the communicator of `prepared`; the
+/// record is complete on every rank.
 RunRecord periodic_run(PreparedScene& prepared, const Scene& scene);
 
 /// Places of a field in the natural order of unknowns; the rows of its snapshots.

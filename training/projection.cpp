@@ -18,7 +18,8 @@ rom::Operators project(const PreparedScene& prepared, const Bases& bases) {
   reduced.supremizer_modes = bases.supremizers;
   reduced.pressure_modes = static_cast<int>(bases.pressure.cols());
   reduced.displacement_modes = static_cast<int>(bases.displacement.cols());
-  Eigen::MatrixXd basis(disc.unknowns(), reduced.velocity_modes + reduced.pressure_modes + reduced.displacement_modes);
+  Eigen::MatrixXd basis(disc.unknowns(),
+                        reduced.velocity_modes + reduced.pressure_modes + reduced.displacement_modes);
   basis << bases.velocity, bases.pressure, bases.displacement;
 
   SparseMatrix linear = full.physical + full.stabilisation;
@@ -51,8 +52,8 @@ rom::Operators project(const PreparedScene& prepared, const Bases& bases) {
   const auto& probes = prepared.observation.probes;
   reduced.envelope = probes.axial * bases.displacement;
   reduced.envelope_imposed = probes.axial * lifting;
-  reduced.envelope_radius =
-      Eigen::Map<const Eigen::VectorXd>(probes.radius.data(), static_cast<Eigen::Index>(probes.radius.size()));
+  reduced.envelope_radius = Eigen::Map<const Eigen::VectorXd>(
+      probes.radius.data(), static_cast<Eigen::Index>(probes.radius.size()));
   return reduced;
 }
 

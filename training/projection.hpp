@@ -6,8 +6,9 @@
 
 namespace undula {
 
-/// See rom::Operators for the system. Exact: the stabilisation is projected as it is, convection becomes a tensor.
-/// Runs with one rank. Throws InputError for openings whose condition is not polynomial (static_pressure).
+/// See rom::Operators for the system. Exact: the stabilisation is projected as it is, convection becomes a
+/// tensor. Runs with one rank. Throws InputError for openings whose condition is not polynomial
+/// (static_pressure).
 rom::Operators project(const PreparedScene& prepared, const Bases& bases);
 
 } // namespace undula

@@ -11,7 +11,8 @@ void check_petsc(PetscErrorCode code, const char* what) {
   const char* text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
   throw NumericsError(std::string(what) + " failed in PETSc (code " + std::to_string(code) + ")",
-                      text ? text : "no text", "run with -malloc_debug -info; check the options given to PETSc");
+                      text ? text : "no text",
+                      "run with -malloc_debug -info; check the options given to PETSc");
 }
 
 } // namespace undula
