@@ -17,7 +17,8 @@ std::pair<double, double> extent_at(const SimplexMesh<2>& mesh, double r) {
   for (const auto& facet : mesh.boundary) {
     const auto &a = mesh.points[facet.points[0]], &b = mesh.points[facet.points[1]];
     if ((a[0] - r) * (b[0] - r) > 0) continue;
-    for (const double z : {a[0] == b[0] ? a[1] : a[1] + (b[1] - a[1]) * (r - a[0]) / (b[0] - a[0]), a[0] == b[0] ? b[1] : a[1] + (b[1] - a[1]) * (r - a[0]) / (b[0] - a[0])}) {
+    for (const double z : {a[0] == b[0] ? a[1] : a[1] + (b[1] - a[1]) * (r - a[0]) / (b[0] - a[0]),
+                           a[0] == b[0] ? b[1] : a[1] + (b[1] - a[1]) * (r - a[0]) / (b[0] - a[0])}) {
       low = std::min(low, z);
       high = std::max(high, z);
     }
@@ -35,7 +36,8 @@ double distance_to_segment(const Point<2>& x, const std::array<Point<2>, 2>& seg
 bool inside(const Point<2>& x, const std::vector<std::array<Point<2>, 2>>& outline) {
   bool odd = false;
   for (const auto& [a, b] : outline)
-    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1])) odd = !odd;
+    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]))
+      odd = !odd;
   return odd;
 }
 
@@ -69,7 +71,8 @@ WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operator
     const double tangential = (traction - traction.dot(n) * n).norm();
     shear.maximum = std::max(shear.maximum, tangential);
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
-      const double w = disc.cut.boundary_quadrature.weights[q] * measure(disc.cut.boundary_quadrature.points[q][0]);
+      const double w =
+          disc.cut.boundary_quadrature.weights[q] * measure(disc.cut.boundary_quadrature.points[q][0]);
       shear.mean += w * tangential;
       area += w;
     }
@@ -121,7 +124,8 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
   if (!disc.problem.solids.empty()) plan.probes = membrane_probes(disc, probe_count);
   for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
     std::set<int> skin;
-    for (const auto& facet : disc.problem.solids[s].mesh.boundary) skin.insert(facet.points.begin(), facet.points.end());
+    for (const auto& facet : disc.problem.solids[s].mesh.boundary)
+      skin.insert(facet.points.begin(), facet.points.end());
     for (const int node : skin) {
       plan.skin_unknowns.push_back(disc.solid_unknown(static_cast<int>(s), node, 0));
       plan.skin_positions.push_back(disc.solid_spaces[s].nodes[node]);
@@ -138,8 +142,8 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
 }
 
 template <int dim>
-Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators, const TimeStepper<dim>& stepper,
-                    const ObservationPlan<dim>& plan, const State& state) {
+Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                    const TimeStepper<dim>& stepper, const ObservationPlan<dim>& plan, const State& state) {
   Observation seen;
   const auto& x = state.x[0];
   seen.step = state.step;

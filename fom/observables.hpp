@@ -22,11 +22,11 @@ struct Observation {
   double inflow = 0;          ///< into the inlet, cm^3/s
   double hydraulic_power = 0; ///< head times outflow, erg/s
   EnergyTerms energy;
-  double speed_max = 0;          ///< cm/s
-  double wall_shear_max = 0;     ///< dyn/cm^2, over the housing and stator
-  double wall_shear_mean = 0;    ///< dyn/cm^2, area mean
-  double clearance_min = 0;      ///< cm, displaced skin to walls; negative where the skin has passed a wall
-  double tip_displacement = 0;   ///< cm, axial, innermost probe
+  double speed_max = 0;           ///< cm/s
+  double wall_shear_max = 0;      ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0;     ///< dyn/cm^2, area mean
+  double clearance_min = 0;       ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  double tip_displacement = 0;    ///< cm, axial, innermost probe
   double holder_displacement = 0; ///< cm, axial, outermost probe
 };
 
@@ -34,9 +34,9 @@ struct Observation {
 template <int dim>
 struct ObservationPlan {
   MembraneProbes probes;
-  std::vector<int> skin_unknowns;             ///< component 0 of the skin's nodes, all solids
-  std::vector<Point<dim>> skin_positions;     ///< at rest, cm
-  std::vector<std::array<Point<dim>, dim>> walls; ///< boundary simplices with imposed velocity
+  std::vector<int> skin_unknowns;                   ///< component 0 of the skin's nodes, all solids
+  std::vector<Point<dim>> skin_positions;           ///< at rest, cm
+  std::vector<std::array<Point<dim>, dim>> walls;   ///< boundary simplices with imposed velocity
   std::vector<std::array<Point<dim>, dim>> outline; ///< all boundary simplices
 };
 
@@ -45,7 +45,7 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
 
 /// Collective.
 template <int dim>
-Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators, const TimeStepper<dim>& stepper,
-                    const ObservationPlan<dim>& plan, const State& state);
+Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                    const TimeStepper<dim>& stepper, const ObservationPlan<dim>& plan, const State& state);
 
 } // namespace undula

@@ -28,8 +28,8 @@ struct BoundaryCondition {
   VectorField<dim> velocity; ///< empty: zero
   TimeFunction pressure;     ///< dyn/cm^2, empty: zero
   OpeningCondition opening = OpeningCondition::total_pressure;
-  /// Flow enters or leaves an opening along its normal: the tangential components vanish. The opening has to be
-  /// aligned with a coordinate plane.
+  /// Flow enters or leaves an opening along its normal: the tangential components vanish. The opening has to
+  /// be aligned with a coordinate plane.
   bool tangential_zero = true;
 };
 

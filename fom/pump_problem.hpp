@@ -15,9 +15,9 @@ double holder_displacement(const Scene& scene, double t);
 /// Pressure at the outlet, head times ramp(t), dyn/cm^2; the inlet is at zero.
 double outlet_pressure(const Scene& scene, double t);
 
-/// Meshes (from the profile, or the Gmsh files of the scene) and conditions. Solid 0 is the membrane; the others
-/// (magnet ring) move with the holder. Names of the openings: "inlet", "outlet"; every boundary other than these
-/// and "axis" is a wall. Throws InputError for bad profiles or meshes.
+/// Meshes (from the profile, or the Gmsh files of the scene) and conditions. Solid 0 is the membrane; the
+/// others (magnet ring) move with the holder. Names of the openings: "inlet", "outlet"; every boundary other
+/// than these and "axis" is a wall. Throws InputError for bad profiles or meshes.
 FsiProblem<2> pump_problem(const Scene& scene);
 
 /// Names of the openings, as keys of Operators::openings.

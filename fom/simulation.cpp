@@ -29,7 +29,9 @@ void set_operating_point(PreparedScene& prepared, const Scene& scene) {
     };
 }
 
-double time_step(const Scene& scene) { return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period); }
+double time_step(const Scene& scene) {
+  return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);
+}
 
 void march(const PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
            const StepCallback& on_step) {

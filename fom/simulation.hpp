@@ -9,8 +9,8 @@
 
 namespace undula {
 
-/// Everything of a scene that does not depend on the operating point: meshes, cut, operators. Operating points of
-/// a campaign share it.
+/// Everything of a scene that does not depend on the operating point: meshes, cut, operators. Operating
+/// points of a campaign share it.
 struct PreparedScene {
   Discretisation<2> disc;
   Operators<2> operators;

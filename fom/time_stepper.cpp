@@ -64,8 +64,8 @@ std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step) {
 }
 
 template <int dim>
-TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators, TimeScheme scheme,
-                              double dt, int factor_every, PhaseTimer& timer)
+TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                              TimeScheme scheme, double dt, int factor_every, PhaseTimer& timer)
     : disc_(disc),
       operators_(operators),
       scheme_(scheme),
@@ -74,8 +74,10 @@ TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<d
       system_(disc, operators, factor_every, timer) {}
 
 template <int dim>
-void TimeStepper<dim>::impose(const State& state, std::array<double, 3> alpha, double t, Eigen::VectorXd& rhs) const {
-  for (const auto& constrained : disc_.constrained) rhs[constrained.unknown] = imposed_fluid_value(constrained, t);
+void TimeStepper<dim>::impose(const State& state, std::array<double, 3> alpha, double t,
+                              Eigen::VectorXd& rhs) const {
+  for (const auto& constrained : disc_.constrained)
+    rhs[constrained.unknown] = imposed_fluid_value(constrained, t);
   for (const auto& node : disc_.imposed) {
     const auto target = imposed_displacement(disc_, node, t);
     for (int c = 0; c < dim; ++c) {
@@ -100,7 +102,8 @@ void TimeStepper<dim>::advance(State& state) {
     sum_over_ranks(operators_.comm, rhs);
     rhs += loads_at(disc_, operators_, t);
     impose(state, alpha, t, rhs);
-    convecting_ = scheme_ == TimeScheme::bdf2 && step > 1 ? Eigen::VectorXd(2 * state.x[0] - state.x[1]) : state.x[0];
+    convecting_ =
+        scheme_ == TimeScheme::bdf2 && step > 1 ? Eigen::VectorXd(2 * state.x[0] - state.x[1]) : state.x[0];
   }
   system_.assemble({alpha[0] / dt_, dt_ / alpha[0]}, &convecting_);
   Eigen::VectorXd x;
@@ -172,7 +175,8 @@ int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operator
                  int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x) {
   LinearSystem<dim> system(disc, operators, 1, timer);
   Eigen::VectorXd rhs = loads_at(disc, operators, 0.0);
-  for (const auto& constrained : disc.constrained) rhs[constrained.unknown] = imposed_fluid_value(constrained, 0.0);
+  for (const auto& constrained : disc.constrained)
+    rhs[constrained.unknown] = imposed_fluid_value(constrained, 0.0);
   for (const auto& node : disc.imposed)
     rhs.template segment<dim>(node.unknown) = imposed_displacement(disc, node, 0.0);
   double change = 0;
@@ -183,9 +187,10 @@ int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operator
     x = std::move(next);
     if (change < tolerance || disc.problem.flow == FlowModel::stokes) return iteration;
   }
-  throw NumericsError("the Picard iteration for the steady state did not converge",
-                      std::to_string(max_iterations) + " iterations, relative change " + std::to_string(change),
-                      "a time-dependent run, or more iterations");
+  throw NumericsError(
+      "the Picard iteration for the steady state did not converge",
+      std::to_string(max_iterations) + " iterations, relative change " + std::to_string(change),
+      "a time-dependent run, or more iterations");
 }
 
 template <int dim>
@@ -199,7 +204,9 @@ Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators
 
 template State initial_state(const Discretisation<2>&);
 template class TimeStepper<2>;
-template int solve_steady(const Discretisation<2>&, const Operators<2>&, double, int, PhaseTimer&, Eigen::VectorXd&);
-template Eigen::VectorXd steady_residual(const Discretisation<2>&, const Operators<2>&, const Eigen::VectorXd&);
+template int solve_steady(const Discretisation<2>&, const Operators<2>&, double, int, PhaseTimer&,
+                          Eigen::VectorXd&);
+template Eigen::VectorXd steady_residual(const Discretisation<2>&, const Operators<2>&,
+                                         const Eigen::VectorXd&);
 
 } // namespace undula

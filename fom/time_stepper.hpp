@@ -7,8 +7,9 @@
 
 namespace undula {
 
-/// Time levels in use: x and d at the current step [0] and the one before [1]. Natural order, complete on every
-/// rank. cm/s (velocities), dyn/cm^2 (pressure), cm (displacement, at the places of the solid velocities).
+/// Time levels in use: x and d at the current step [0] and the one before [1]. Natural order, complete on
+/// every rank. cm/s (velocities), dyn/cm^2 (pressure), cm (displacement, at the places of the solid
+/// velocities).
 struct State {
   int step = 0;
   double time = 0; ///< s
@@ -50,8 +51,8 @@ public:
   /// Terms of the step that ended in `state` (state.step >= 1).
   EnergyTerms energy(const State& state) const;
 
-  /// What is left over of every equation of that step: zero but in the rows of imposed unknowns, where it is the
-  /// generalised force that imposes them. Natural order, complete on every rank. Collective.
+  /// What is left over of every equation of that step: zero but in the rows of imposed unknowns, where it is
+  /// the generalised force that imposes them. Natural order, complete on every rank. Collective.
   Eigen::VectorXd residual(const State& state) const;
 
   double dt() const { return dt_; }
@@ -70,9 +71,9 @@ private:
   Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step
 };
 
-/// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids, if any, are
-/// at rest under their static loads (their unknowns are displacements here). Returns the iterations taken.
-/// Throws NumericsError when `max_iterations` do not suffice.
+/// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids, if any,
+/// are at rest under their static loads (their unknowns are displacements here). Returns the iterations
+/// taken. Throws NumericsError when `max_iterations` do not suffice.
 template <int dim>
 int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
                  int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x);

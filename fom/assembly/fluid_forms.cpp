@@ -53,7 +53,9 @@ void add_fluid_viscosity_and_pressure(const Discretisation<dim>& disc, const Sha
     for_each_point(disc, part, rule, [&](const Point<dim>& x, double w) {
       const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
       const double inverse_r = hoop ? 1.0 / x[0] : 0.0;
-      const auto divergence = [&](int node, int c) { return g(c, node) + (c == 0 ? lambda[node] * inverse_r : 0.0); };
+      const auto divergence = [&](int node, int c) {
+        return g(c, node) + (c == 0 ? lambda[node] * inverse_r : 0.0);
+      };
       for (int i = 0; i <= dim; ++i)
         for (int j = 0; j <= dim; ++j) {
           const double laplace = g.col(i).dot(g.col(j));
@@ -75,10 +77,9 @@ void add_fluid_viscosity_and_pressure(const Discretisation<dim>& disc, const Sha
 }
 
 template <int dim>
-Eigen::Matrix<double, dim + 1, dim + 1> part_convection(double density,
-                                                        const Eigen::Matrix<double, dim + 1, dim + 1>& moments,
-                                                        const Eigen::Matrix<double, dim, dim + 1>& gradients,
-                                                        const Eigen::Matrix<double, dim, dim + 1>& b) {
+Eigen::Matrix<double, dim + 1, dim + 1> part_convection(
+    double density, const Eigen::Matrix<double, dim + 1, dim + 1>& moments,
+    const Eigen::Matrix<double, dim, dim + 1>& gradients, const Eigen::Matrix<double, dim, dim + 1>& b) {
   // (k, j): derivative of shape function j along the convecting velocity of vertex k.
   const Eigen::Matrix<double, dim + 1, dim + 1> transport = b.transpose() * gradients;
   const Eigen::Matrix<double, dim + 1, dim + 1> forward = moments.transpose() * transport;
@@ -86,7 +87,8 @@ Eigen::Matrix<double, dim + 1, dim + 1> part_convection(double density,
 }
 
 template <int dim>
-Eigen::VectorXd opening_functional(const Discretisation<dim>& disc, const Share& share, const std::string& name) {
+Eigen::VectorXd opening_functional(const Discretisation<dim>& disc, const Share& share,
+                                   const std::string& name) {
   Eigen::VectorXd load = Eigen::VectorXd::Zero(disc.unknowns());
   const Measure measure = measure_of(disc.problem.space);
   for (const auto& piece : disc.cut.boundary) {
@@ -133,7 +135,8 @@ Eigen::VectorXd body_force_load(const Discretisation<dim>& disc, const Share& sh
       const double volume = cell_measure(body.mesh, static_cast<int>(cell));
       for (std::size_t q = 0; q < rule.weights.size(); ++q) {
         Point<dim> x = Point<dim>::Zero();
-        for (int a = 0; a <= dim; ++a) x += rule.barycentric[q][a] * body.mesh.points[body.mesh.cells[cell][a]];
+        for (int a = 0; a <= dim; ++a)
+          x += rule.barycentric[q][a] * body.mesh.points[body.mesh.cells[cell][a]];
         const auto shape = quadratic_values<dim>(rule.barycentric[q]);
         const Point<dim> force = rule.weights[q] * volume * measure(x[0]) * body.body_force(x, t);
         for (std::size_t k = 0; k < nodes.size(); ++k)
@@ -148,7 +151,8 @@ Eigen::VectorXd body_force_load(const Discretisation<dim>& disc, const Share& sh
 template PartMoments<2> part_moments(const Discretisation<2>&, const Share&);
 template void add_fluid_mass(const Discretisation<2>&, const PartMoments<2>&, Triplets&);
 template void add_fluid_viscosity_and_pressure(const Discretisation<2>&, const Share&, Triplets&);
-template Eigen::Matrix3d part_convection<2>(double, const Eigen::Matrix3d&, const Eigen::Matrix<double, 2, 3>&,
+template Eigen::Matrix3d part_convection<2>(double, const Eigen::Matrix3d&,
+                                            const Eigen::Matrix<double, 2, 3>&,
                                             const Eigen::Matrix<double, 2, 3>&);
 template Eigen::VectorXd opening_functional(const Discretisation<2>&, const Share&, const std::string&);
 template Eigen::VectorXd body_force_load(const Discretisation<2>&, const Share&, double);

@@ -9,16 +9,17 @@ namespace {
 template <int dim>
 struct InterfaceBasis {
   int unknown;
-  int component;            ///< of the jump; -1 for a pressure
-  double jump;              ///< value of u - v_s along `component`
-  Point<dim> traction;      ///< 2 mu eps(basis) n, dyn/cm^2 per unit
-  double pressure;          ///< value of the pressure
+  int component;       ///< of the jump; -1 for a pressure
+  double jump;         ///< value of u - v_s along `component`
+  Point<dim> traction; ///< 2 mu eps(basis) n, dyn/cm^2 per unit
+  double pressure;     ///< value of the pressure
 };
 
 } // namespace
 
 template <int dim>
-void add_interface(const Discretisation<dim>& disc, const Share& share, Triplets& consistent, Triplets& penalty) {
+void add_interface(const Discretisation<dim>& disc, const Share& share, Triplets& consistent,
+                   Triplets& penalty) {
   const double mu = disc.problem.fluid.viscosity;
   const auto& weights = disc.problem.stabilisation;
   const Measure measure = measure_of(disc.problem.space);
@@ -65,8 +66,9 @@ void add_interface(const Discretisation<dim>& disc, const Share& share, Triplets
           if (test.component < 0 || trial.component < 0) continue;
           const double jumps = w * test.jump * trial.jump;
           const double tangential = test.component == trial.component ? viscous_penalty : 0.0;
-          penalty.emplace_back(test.unknown, trial.unknown,
-                               jumps * (tangential + normal_penalty * n[test.component] * n[trial.component]));
+          penalty.emplace_back(
+              test.unknown, trial.unknown,
+              jumps * (tangential + normal_penalty * n[test.component] * n[trial.component]));
         }
     }
   }

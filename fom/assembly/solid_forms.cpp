@@ -22,7 +22,8 @@ void for_each_solid_point(const Discretisation<dim>& disc, const Share& share, F
       for (std::size_t q = 0; q < rule.weights.size(); ++q) {
         Point<dim> x = Point<dim>::Zero();
         for (int a = 0; a <= dim; ++a) x += rule.barycentric[q][a] * mesh.points[mesh.cells[c][a]];
-        f(solid, static_cast<int>(c), nodes, rule.barycentric[q], x, rule.weights[q] * volume * measure(x[0]));
+        f(solid, static_cast<int>(c), nodes, rule.barycentric[q], x,
+          rule.weights[q] * volume * measure(x[0]));
       }
     }
   }
@@ -32,42 +33,47 @@ void for_each_solid_point(const Discretisation<dim>& disc, const Share& share, F
 
 template <int dim>
 void add_solid_mass(const Discretisation<dim>& disc, const Share& share, Triplets& out) {
-  for_each_solid_point(disc, share, [&](int solid, int, const auto& nodes, const auto& lambda, const Point<dim>&, double w) {
-    const auto shape = quadratic_values<dim>(lambda);
-    const double density = disc.problem.solids[solid].properties.density;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (std::size_t j = 0; j < nodes.size(); ++j)
-        for (int c = 0; c < dim; ++c)
-          out.emplace_back(disc.solid_unknown(solid, nodes[i], c), disc.solid_unknown(solid, nodes[j], c),
-                           w * density * shape[i] * shape[j]);
-  });
+  for_each_solid_point(
+      disc, share, [&](int solid, int, const auto& nodes, const auto& lambda, const Point<dim>&, double w) {
+        const auto shape = quadratic_values<dim>(lambda);
+        const double density = disc.problem.solids[solid].properties.density;
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          for (std::size_t j = 0; j < nodes.size(); ++j)
+            for (int c = 0; c < dim; ++c)
+              out.emplace_back(disc.solid_unknown(solid, nodes[i], c), disc.solid_unknown(solid, nodes[j], c),
+                               w * density * shape[i] * shape[j]);
+      });
 }
 
 template <int dim>
 void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share,
                          const std::function<double(const SolidProperties&)>& factor, Triplets& out) {
   const bool hoop = disc.problem.space == Space::axisymmetric;
-  for_each_solid_point(disc, share, [&](int solid, int cell, const auto& nodes, const auto& lambda, const Point<dim>& x,
-                                        double w) {
-    const auto& body = disc.problem.solids[solid];
-    const double young = body.properties.young, poisson = body.properties.poisson;
-    const double scale = w * factor(body.properties);
-    const double lame = scale * young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-    const double shear = scale * young / (2 * (1 + poisson));
-    const auto shape = quadratic_values<dim>(lambda);
-    const auto g = quadratic_gradients<dim>(lambda, barycentric_gradients(body.mesh, cell));
-    const double inverse_r = hoop ? 1.0 / x[0] : 0.0;
-    const auto divergence = [&](std::size_t k, int c) { return g(c, k) + (c == 0 ? shape[k] * inverse_r : 0.0); };
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (std::size_t j = 0; j < nodes.size(); ++j)
-        for (int d = 0; d < dim; ++d)
-          for (int c = 0; c < dim; ++c) {
-            double value = lame * divergence(i, d) * divergence(j, c) + shear * g(c, i) * g(d, j);
-            if (c == d) value += shear * g.col(i).dot(g.col(j));
-            if (c == 0 && d == 0) value += 2 * shear * shape[i] * shape[j] * inverse_r * inverse_r;
-            out.emplace_back(disc.solid_unknown(solid, nodes[i], d), disc.solid_unknown(solid, nodes[j], c), value);
-          }
-  });
+  for_each_solid_point(
+      disc, share,
+      [&](int solid, int cell, const auto& nodes, const auto& lambda, const Point<dim>& x, double w) {
+        const auto& body = disc.problem.solids[solid];
+        const double young = body.properties.young, poisson = body.properties.poisson;
+        const double scale = w * factor(body.properties);
+        const double lame = scale * young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+        const double shear = scale * young / (2 * (1 + poisson));
+        const auto shape = quadratic_values<dim>(lambda);
+        const auto g = quadratic_gradients<dim>(lambda, barycentric_gradients(body.mesh, cell));
+        const double inverse_r = hoop ? 1.0 / x[0] : 0.0;
+        const auto divergence = [&](std::size_t k, int c) {
+          return g(c, k) + (c == 0 ? shape[k] * inverse_r : 0.0);
+        };
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          for (std::size_t j = 0; j < nodes.size(); ++j)
+            for (int d = 0; d < dim; ++d)
+              for (int c = 0; c < dim; ++c) {
+                double value = lame * divergence(i, d) * divergence(j, c) + shear * g(c, i) * g(d, j);
+                if (c == d) value += shear * g.col(i).dot(g.col(j));
+                if (c == 0 && d == 0) value += 2 * shear * shape[i] * shape[j] * inverse_r * inverse_r;
+                out.emplace_back(disc.solid_unknown(solid, nodes[i], d),
+                                 disc.solid_unknown(solid, nodes[j], c), value);
+              }
+      });
 }
 
 template void add_solid_mass(const Discretisation<2>&, const Share&, Triplets&);

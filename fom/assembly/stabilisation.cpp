@@ -42,8 +42,8 @@ void add_fluid_stabilisation(const Discretisation<dim>& disc, const Share& share
     {
       Point<dim> centre = Point<dim>::Zero();
       for (const int p : facet.points) centre += disc.cut.mesh.points[p] / dim;
-      const double simplex =
-          dim * cell_measure(disc.cut.mesh, cell0) * barycentric_gradients(disc.cut.mesh, cell0).col(local0).norm();
+      const double simplex = dim * cell_measure(disc.cut.mesh, cell0) *
+                             barycentric_gradients(disc.cut.mesh, cell0).col(local0).norm();
       area = simplex * measure(centre[0]); // r is linear: its mean is at the centre
     }
     const double phi = phi_weight(w, fluid, h);

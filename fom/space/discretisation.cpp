@@ -12,12 +12,14 @@ namespace {
 
 template <int dim>
 const BoundaryCondition<dim>& condition_of(const FsiProblem<dim>& problem, int tag) {
-  const std::string name =
-      tag >= 0 && tag < static_cast<int>(problem.background.boundary_names.size()) ? problem.background.boundary_names[tag] : "";
+  const std::string name = tag >= 0 && tag < static_cast<int>(problem.background.boundary_names.size())
+                               ? problem.background.boundary_names[tag]
+                               : "";
   const auto found = problem.boundary.find(name);
   if (found == problem.boundary.end())
     throw InputError("a part of the fluid's boundary has no condition", "'" + name + "'",
-                     "a condition for every boundary name of the mesh", "boundary names of the background mesh");
+                     "a condition for every boundary name of the mesh",
+                     "boundary names of the background mesh");
   return found->second;
 }
 
@@ -52,9 +54,9 @@ void constrain_boundary(Discretisation<dim>& disc) {
         if (std::find(facet.points.begin(), facet.points.end(), cell[local]) == facet.points.end()) continue;
         const int node = disc.fluid_nodes.part_dofs[piece.part][local];
         for (int c = 0; c < dim; ++c) {
-          const bool constrained = condition.kind == Kind::velocity ||
-                                   (condition.kind == Kind::symmetry && c == 0) ||
-                                   (condition.kind == Kind::opening && condition.tangential_zero && c != axis);
+          const bool constrained =
+              condition.kind == Kind::velocity || (condition.kind == Kind::symmetry && c == 0) ||
+              (condition.kind == Kind::opening && condition.tangential_zero && c != axis);
           if (!constrained) continue;
           const int unknown = disc.velocity_unknown(node, c);
           fixed[unknown] = 1;

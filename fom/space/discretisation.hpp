@@ -37,7 +37,8 @@ struct Discretisation {
   CutMesh<dim> cut;
   DofSets<dim> fluid_nodes;
   std::vector<QuadraticSpace<dim>> solid_spaces;
-  std::vector<int> solid_offset; ///< first unknown of each solid; size solids + 1, the last = number of unknowns
+  std::vector<int>
+      solid_offset; ///< first unknown of each solid; size solids + 1, the last = number of unknowns
   std::vector<ConstrainedUnknown<dim>> constrained;
   std::vector<ImposedNode<dim>> imposed;
   std::vector<char> is_constrained; ///< by unknown, both kinds
@@ -61,9 +62,9 @@ std::vector<Point<dim>> unknown_positions(const Discretisation<dim>& discretisat
 
 /// Distribution of the unknowns over ranks by recursive coordinate bisection of their nodes.
 struct Ownership {
-  std::vector<int> owner;        ///< by natural unknown
-  std::vector<int> petsc_index;  ///< natural -> PETSc (contiguous per rank)
-  std::vector<int> first;        ///< PETSc range of rank r is [first[r], first[r + 1])
+  std::vector<int> owner;       ///< by natural unknown
+  std::vector<int> petsc_index; ///< natural -> PETSc (contiguous per rank)
+  std::vector<int> first;       ///< PETSc range of rank r is [first[r], first[r + 1])
 };
 
 template <int dim>

@@ -38,8 +38,9 @@ QuadraticValues<dim> quadratic_values(const Eigen::Matrix<double, dim + 1, 1>& l
 }
 
 template <int dim>
-QuadraticGradients<dim> quadratic_gradients(const Eigen::Matrix<double, dim + 1, 1>& lambda,
-                                            const Eigen::Matrix<double, dim, dim + 1>& barycentric_gradients) {
+QuadraticGradients<dim> quadratic_gradients(
+    const Eigen::Matrix<double, dim + 1, 1>& lambda,
+    const Eigen::Matrix<double, dim, dim + 1>& barycentric_gradients) {
   QuadraticGradients<dim> gradients;
   for (int a = 0; a <= dim; ++a) gradients.col(a) = (4 * lambda[a] - 1) * barycentric_gradients.col(a);
   int local = dim + 1;
@@ -52,6 +53,7 @@ QuadraticGradients<dim> quadratic_gradients(const Eigen::Matrix<double, dim + 1,
 
 template QuadraticSpace<2> build_quadratic_space<2>(const SimplexMesh<2>&);
 template QuadraticValues<2> quadratic_values<2>(const Eigen::Vector3d&);
-template QuadraticGradients<2> quadratic_gradients<2>(const Eigen::Vector3d&, const Eigen::Matrix<double, 2, 3>&);
+template QuadraticGradients<2> quadratic_gradients<2>(const Eigen::Vector3d&,
+                                                      const Eigen::Matrix<double, 2, 3>&);
 
 } // namespace undula

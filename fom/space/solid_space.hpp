@@ -11,8 +11,9 @@ namespace undula {
 template <int dim>
 struct QuadraticSpace {
   static constexpr int nodes_per_cell = (dim + 1) * (dim + 2) / 2;
-  std::vector<Point<dim>> nodes;                             ///< cm
-  std::vector<std::array<int, nodes_per_cell>> cell_nodes;   ///< dim+1 vertices, then edges (0,1),(0,2),..,(1,2),..
+  std::vector<Point<dim>> nodes; ///< cm
+  std::vector<std::array<int, nodes_per_cell>>
+      cell_nodes; ///< dim+1 vertices, then edges (0,1),(0,2),..,(1,2),..
 };
 
 template <int dim>

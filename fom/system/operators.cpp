@@ -42,8 +42,10 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   add_fluid_viscosity_and_pressure(disc, share, physical);
   add_fluid_stabilisation(disc, share, stabilisation);
   add_interface(disc, share, physical, stabilisation);
-  add_solid_stiffness(disc, share, [](const SolidProperties& solid) { return solid.damping_time; }, damping);
-  add_solid_stiffness(disc, share, [](const SolidProperties&) { return 1.0; }, stiffness);
+  add_solid_stiffness(
+      disc, share, [](const SolidProperties& solid) { return solid.damping_time; }, damping);
+  add_solid_stiffness(
+      disc, share, [](const SolidProperties&) { return 1.0; }, stiffness);
   operators.mass = compress(size, mass);
   operators.physical = compress(size, physical);
   operators.stabilisation = compress(size, stabilisation);

@@ -25,7 +25,7 @@ struct Operators {
   SparseMatrix damping;       ///< Kelvin-Voigt: damping_time * stiffness
   SparseMatrix stiffness;
   PartMoments<dim> moments;
-  std::vector<int> own_parts; ///< parts of the share
+  std::vector<int> own_parts;                                 ///< parts of the share
   std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part
   std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
 };
@@ -39,12 +39,12 @@ template <int dim>
 Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& disc, int part,
                                                   const Eigen::VectorXd& x);
 
-/// Visits every entry (row, column, value) of the convection matrix for the convecting field `b`: the skew volume
-/// term of the share, and the momentum carried through openings that ask for it (see OpeningCondition).
-/// The sequence of (row, column) does not depend on `b`.
+/// Visits every entry (row, column, value) of the convection matrix for the convecting field `b`: the skew
+/// volume term of the share, and the momentum carried through openings that ask for it (see
+/// OpeningCondition). The sequence of (row, column) does not depend on `b`.
 template <int dim, class F>
-void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators, const Eigen::VectorXd& b,
-                      F&& f);
+void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                      const Eigen::VectorXd& b, F&& f);
 
 /// Sum of `values` over all ranks, in place.
 void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values);
@@ -52,8 +52,8 @@ void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values);
 // ---------------------------------------------------------------------------------------------------------------
 
 template <int dim, class F>
-void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators, const Eigen::VectorXd& b,
-                      F&& f) {
+void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                      const Eigen::VectorXd& b, F&& f) {
   const double density = disc.problem.fluid.density;
   for (const int part : operators.own_parts) {
     const auto& nodes = disc.fluid_nodes.part_dofs[part];
