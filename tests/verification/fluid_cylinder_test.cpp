@@ -60,7 +60,7 @@ void expect_2d1(const char* name, const SteadyFlow& flow, const Point<2>& force,
               coefficients[1], lift_2d1, drop, 100 * (drop / pressure_2d1 - 1));
   EXPECT_LT(std::abs(coefficients[0] / drag_2d1 - 1), tolerance);
   EXPECT_LT(std::abs(coefficients[1] - lift_2d1), 0.01);
-  EXPECT_LT(std::abs(drop / pressure_2d1 - 1), 0.02);
+  EXPECT_LT(std::abs(drop / pressure_2d1 - 1), 1.5 * tolerance);
 }
 
 TEST(FluidCylinder, SteadyDragOnAFittedMesh) {
