@@ -8,6 +8,7 @@ namespace undula {
 
 void add_check_command(CLI::App& app);
 void add_solve_command(CLI::App& app);
+void add_train_command(CLI::App& app);
 void add_hq_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   undula::add_check_command(app);
   undula::add_solve_command(app);
+  undula::add_train_command(app);
   undula::add_hq_command(app);
   undula::add_validate_command(app);
 
