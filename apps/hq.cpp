@@ -1,32 +1,51 @@
-// undula hq model.h5: the head-flow curve of a reduced model.
+// undula hq model.h5|scene.toml: the head-flow curve of a reduced model, or of full-order runs.
 //   undula hq data/models/wave_pump_fixed.h5 --frequency 120 --stroke 0.53 --head 40:62:2
 //   undula hq model.h5 --frequency 120 --stroke 0.53 --head 50,55,60 --json
 //   undula hq model.h5 --frequency 120 --stroke 0.53 --data data/measured/corwave_120hz_0.53mm.csv --plot
 //   hq.png
+//   undula hq data/scenes/wave_pump_fixed.toml --head 0,20,40,60 --set mesh.gap_elements=3
 #include <spdlog/spdlog.h>
 
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "apps/commands.hpp"
 #include "apps/gnuplot.hpp"
 #include "apps/head_list.hpp"
 #include "apps/hq_report.hpp"
+#include "apps/mpi_session.hpp"
+#include "apps/progress.hpp"
+#include "apps/scene_curve.hpp"
+#include "base/error.hpp"
+#include "base/units.hpp"
+#include "fom/io/text_file.hpp"
+#include "fom/scene/scene_file.hpp"
+#include "training/periodic_run.hpp"
 
 namespace undula {
 namespace {
 
 struct HqCommandOptions {
   std::string model;
-  double frequency_Hz = 0;
-  double stroke_mm = 0;
+  std::optional<double> frequency_Hz;
+  std::optional<double> stroke_mm;
   std::string heads;
   std::string data;
   std::string picture;
   bool json = false;
+  std::vector<std::string> overrides;
+  std::vector<std::string> petsc;
 };
 
-void hq(const HqCommandOptions& options) {
+void hq_of_model(const HqCommandOptions& options) {
+  if (!options.overrides.empty() || !options.petsc.empty()) {
+    throw InputError("options of scenes do not go with a reduced model", options.model,
+                     "a scene (.toml) with --set and options for PETSc", "the command line");
+  }
+  if (!options.frequency_Hz || !options.stroke_mm) {
+    throw CLI::RequiredError(options.frequency_Hz ? "--stroke" : "--frequency");
+  }
   // 1. Everything that may be wrong with the input comes before the first result.
   if (!options.picture.empty()) {
     check_picture_name(options.picture);
@@ -42,9 +61,9 @@ void hq(const HqCommandOptions& options) {
   }
 
   // 2. The curve, and how far it can be trusted.
-  const auto points = rom::hq_curve(model, options.frequency_Hz, options.stroke_mm, heads);
+  const auto points = rom::hq_curve(model, *options.frequency_Hz, *options.stroke_mm, heads);
   for (const std::string& line :
-       rom::outside_training_box(model.box, options.frequency_Hz, options.stroke_mm, heads)) {
+       rom::outside_training_box(model.box, *options.frequency_Hz, *options.stroke_mm, heads)) {
     spdlog::warn("{}", line);
   }
   for (const rom::HqPoint& point : points) {
@@ -54,7 +73,7 @@ void hq(const HqCommandOptions& options) {
   }
 
   // 3. Numbers to stdout, picture beside them.
-  const HqReport report = {options.model, options.frequency_Hz, options.stroke_mm, points,
+  const HqReport report = {options.model, *options.frequency_Hz, *options.stroke_mm, points,
                            measured ? &*measured : nullptr};
   std::cout << (options.json ? hq_json(report) : hq_table(report));
   if (!options.picture.empty()) {
@@ -62,20 +81,83 @@ void hq(const HqCommandOptions& options) {
   }
 }
 
+void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
+  // 1. The scene and the heads.
+  if (options.heads.empty()) {
+    throw CLI::RequiredError("--head");
+  }
+  if (!options.data.empty() || !options.picture.empty()) {
+    throw InputError("comparing full-order runs with data is the task of another command", options.model,
+                     "undula validate SCENE --data FILE --plot PICTURE", "the command line");
+  }
+  std::vector<std::string> overrides = options.overrides;
+  if (options.frequency_Hz) {
+    overrides.push_back("operating_point.frequency_Hz=" + exact_number(*options.frequency_Hz));
+  }
+  if (options.stroke_mm) {
+    overrides.push_back("operating_point.stroke_mm=" + exact_number(*options.stroke_mm));
+  }
+  const Scene scene = read_scene(options.model, overrides);
+  const std::vector<double> heads = parse_heads(options.heads);
+
+  // 2. One full-order run to its periodic state per head; meshes and operators are shared.
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  PhaseTimer timer;
+  const auto prepared = prepare_scene(scene, comm, timer);
+  std::optional<Progress> progress;
+  if (rank == 0) {
+    progress.emplace("hq", static_cast<long>(heads.size()));
+  }
+  std::vector<ScenePoint> points;
+  for (const double head : heads) {
+    Scene at_head = scene;
+    at_head.operating_point.head = units::pressure_from_mmHg(head);
+    points.push_back(scene_point(periodic_run(*prepared, at_head)));
+    if (progress) {
+      progress->update(static_cast<long>(points.size()));
+    }
+  }
+  progress.reset();
+
+  // 3. Numbers to stdout.
+  if (rank == 0) {
+    std::cout << (options.json ? scene_curve_json(scene, prepared->disc.unknowns(), points, timer)
+                               : scene_curve_table(points));
+  }
+}
+
+void hq(const HqCommandOptions& options) {
+  if (std::filesystem::path(options.model).extension() == ".toml") {
+    run_parallel(options.petsc, [&](MPI_Comm comm) { hq_of_scene(options, comm); });
+  } else {
+    hq_of_model(options);
+  }
+}
+
 } // namespace
 
 void add_hq_command(CLI::App& app) {
   auto options = std::make_shared<HqCommandOptions>();
-  CLI::App* command = app.add_subcommand("hq", "Head-flow curve of a reduced model: table, JSON, plot");
-  command->add_option("model", options->model, "model file (HDF5) made by undula train")->required();
-  command->add_option("--frequency", options->frequency_Hz, "frequency of the actuator, Hz")->required();
-  command->add_option("--stroke", options->stroke_mm, "amplitude of the actuator, mm")->required();
+  CLI::App* command = app.add_subcommand(
+      "hq", "Head-flow curve of a reduced model (table, JSON, plot) or of full-order runs");
+  command->add_option("model", options->model, "model file (HDF5) made by undula train, or a scene (.toml)")
+      ->required();
+  command->add_option("--frequency", options->frequency_Hz,
+                      "frequency of the actuator, Hz; a scene has its own");
+  command->add_option("--stroke", options->stroke_mm, "amplitude of the actuator, mm; a scene has its own");
   command->add_option(
       "--head", options->heads,
       "heads in mmHg, low:high:step or a list with commas; default: 12 over the training box");
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)");
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");
+  command
+      ->add_option("--set", options->overrides,
+                   "override a key of a scene: section.key=value, may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("petsc", options->petsc, "options for PETSc, after -- (scenes)");
   command->callback([options] { hq(*options); });
 }
 
