@@ -139,7 +139,9 @@ Bases build_bases(const PreparedScene& prepared, const Scene& scene, std::span<c
   // Rounding of the imposed displacement must not leak into rows that the system does not solve for.
   for (const auto& node : disc.imposed) bases.displacement.middleRows<2>(node.unknown).setZero();
   const Eigen::MatrixXd proper = expand(velocity.modes, velocity_rows, disc.unknowns());
-  const Eigen::MatrixXd extra = supremizers(prepared, angular_frequency, bases.pressure);
+  Eigen::MatrixXd extra(disc.unknowns(), 0);
+  if (plan.pressure_stability == PressureStability::supremizers)
+    extra = supremizers(prepared, angular_frequency, bases.pressure);
   bases.supremizers = static_cast<int>(extra.cols());
   bases.velocity.resize(disc.unknowns(), proper.cols() + extra.cols());
   bases.velocity << proper, extra;

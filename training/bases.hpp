@@ -11,7 +11,7 @@ namespace undula {
 
 /// Columns in the natural order of all unknowns, zero outside their field.
 struct Bases {
-  Eigen::MatrixXd velocity; ///< proper modes first, then one supremizer per pressure mode
+  Eigen::MatrixXd velocity; ///< proper modes first, then the supremizers, if asked for
   Eigen::MatrixXd pressure;
   Eigen::MatrixXd displacement; ///< relative to the holder; vanish where motion is imposed
   int supremizers = 0;          ///< the last so many columns of `velocity`
@@ -26,9 +26,10 @@ Eigen::VectorXd imposed_lifting(const Discretisation<2>& disc);
 /// the run's own norm, so that small strokes count as much as large ones. Sizes by scene.training (0: by
 /// energy tolerance).
 ///
-/// Supremizers (Ballarin et al. 2015): for every pressure mode q the velocity s with (s, v)_X = b(v, q) for
-/// all v, X the symmetric part of viscosity and stabilisation plus inertia at the middle frequency. They keep
-/// the reduced pressure tied to the momentum balance. Runs with one rank only.
+/// With scene.training.pressure_stability = supremizers (Ballarin et al. 2015), for every pressure mode q the
+/// velocity s with (s, v)_X = b(v, q) for all v joins the basis, X the symmetric part of viscosity and
+/// stabilisation plus inertia at the middle frequency. Otherwise the projected stabilisation alone ties the
+/// pressure to the flow, which on the pump is cheaper and no less accurate. Runs with one rank only.
 Bases build_bases(const PreparedScene& prepared, const Scene& scene, std::span<const RunRecord> runs);
 
 } // namespace undula

@@ -21,6 +21,12 @@ enum class OpeningCondition {
   traction,        ///< plain traction on both; for verification, blows up on strong inflow
 };
 
+/// What keeps the reduced pressure stable.
+enum class PressureStability {
+  projected_stabilisation, ///< the full-order pressure stabilisation, projected
+  supremizers,             ///< one velocity mode more per pressure mode, beside it
+};
+
 struct FluidProperties {
   double density = 0;   ///< g/cm^3
   double viscosity = 0; ///< g/(cm s)
@@ -81,6 +87,7 @@ struct TrainingPlan {
   int velocity_modes = 0, pressure_modes = 0, displacement_modes = 0; ///< 0: by energy_tolerance
   double energy_tolerance = 0;                                        ///< 1 - captured energy
   double periodic_tolerance = 0; ///< change of the velocity over a period at which a run counts as periodic
+  PressureStability pressure_stability = PressureStability::projected_stabilisation;
   int ranks_per_run = 1;
 };
 

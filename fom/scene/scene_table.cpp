@@ -194,6 +194,15 @@ std::vector<SceneKey> training_keys() {
             FIELD(training.pressure_modes), 0, 0),
       count("training.displacement_modes", "displacement modes; 0: by `energy_tolerance`",
             FIELD(training.displacement_modes), 0, 0),
+      {"training.pressure_stability", "",
+       "what ties the reduced pressure to the momentum balance: the projected stabilisation alone, or "
+       "supremizers "
+       "beside it",
+       leaves_state,
+       choice<FIELD(training.pressure_stability)>(
+           {name("projected-stabilisation", PressureStability::projected_stabilisation),
+            name("supremizers", PressureStability::supremizers)},
+           {}, "projected-stabilisation")},
       bound("training.energy_tolerance", "", "energy that the modes may miss, as a part of the whole",
             FIELD(training.energy_tolerance), 1, between(0, 1), 1e-6),
       bound("training.periodic_tolerance", "",
