@@ -6,6 +6,7 @@
 //   undula hq data/scenes/wave_pump_fixed.toml --head 0,20,40,60 --set mesh.gap_elements=3
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -61,7 +62,9 @@ void hq_of_model(const HqCommandOptions& options) {
   }
 
   // 2. The curve, and how far it can be trusted.
+  const auto begin = std::chrono::steady_clock::now();
   const auto points = rom::hq_curve(model, *options.frequency_Hz, *options.stroke_mm, heads);
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
   for (const std::string& line :
        rom::outside_training_box(model.box, *options.frequency_Hz, *options.stroke_mm, heads)) {
     spdlog::warn("{}", line);
@@ -73,8 +76,8 @@ void hq_of_model(const HqCommandOptions& options) {
   }
 
   // 3. Numbers to stdout, picture beside them.
-  const HqReport report = {options.model, *options.frequency_Hz, *options.stroke_mm, points,
-                           measured ? &*measured : nullptr};
+  const HqReport report = {options.model, *options.frequency_Hz,           *options.stroke_mm,
+                           points,        measured ? &*measured : nullptr, elapsed.count()};
   std::cout << (options.json ? hq_json(report) : hq_table(report));
   if (!options.picture.empty()) {
     plot_hq_report(options.picture, report, model);

@@ -46,13 +46,15 @@ std::string hq_table(const HqReport& report) {
     }
     rows.push_back(std::move(row));
   }
-  return text_table(header, rows);
+  return text_table(header, rows) + std::to_string(report.points.size()) + " points in " +
+         decimals(report.milliseconds, 0) + " ms\n";
 }
 
 std::string hq_json(const HqReport& report) {
   nlohmann::ordered_json result = {{"model", report.model_file},
                                    {"frequency_Hz", report.frequency_Hz},
                                    {"stroke_mm", report.stroke_mm},
+                                   {"milliseconds", report.milliseconds},
                                    {"points", nlohmann::ordered_json::array()}};
   for (const rom::HqPoint& point : report.points) {
     nlohmann::ordered_json entry = {{"head_mmHg", point.head_mmHg},

@@ -19,6 +19,7 @@ struct HqReport {
   double stroke_mm = 0;
   std::span<const rom::HqPoint> points;
   const MeasuredCurve* measured = nullptr; ///< nullptr: no data given
+  double milliseconds = 0;                 ///< wall time of the curve, error estimates included
 };
 
 /// Columns head, flow, error estimate, inside the training box; with data also the measured fit at that head.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "condense.hpp"
 
 namespace undula::rom {
 namespace {
@@ -65,12 +66,12 @@ Line tightest(std::span<const double> x, std::span<const double> y) {
 } // namespace
 
 FlowIndicator::FlowIndicator(const Operators& operators, double frequency_Hz, int steps_per_period)
-    : coarse_(coarse_operators(operators)),
+    : coarse_(condense_pressure(coarse_operators(operators))),
       solver_(coarse_, frequency_Hz, steps_per_period, coarse_options()) {
   const int proper_modes = operators.velocity_modes - operators.supremizer_modes;
-  const int kept_proper_modes = coarse_.velocity_modes - coarse_.supremizer_modes;
+  const int kept_proper_modes = fewer(proper_modes);
   for (int i = 0; i < kept_proper_modes; ++i) kept_.push_back(i);
-  for (int i = 0; i < coarse_.supremizer_modes; ++i) kept_.push_back(proper_modes + i);
+  for (int i = 0; i < coarse_.velocity_modes - kept_proper_modes; ++i) kept_.push_back(proper_modes + i);
 }
 
 double FlowIndicator::operator()(double stroke_cm, double head, const PeriodicState& state) {

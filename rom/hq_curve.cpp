@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "condense.hpp"
 #include "continuation.hpp"
 #include "error_estimate.hpp"
 
@@ -70,11 +71,11 @@ std::vector<std::string> outside_training_box(const TrainingBox& box, double fre
 std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double stroke_mm,
                               std::span<const double> heads_mmHg, const HqOptions& options) {
   check_input(frequency_Hz, stroke_mm, heads_mmHg);
-  const auto& operators = model.operators;
+  const Operators operators = condense_pressure(model.operators);
   const double stroke = units::length_from_mm(stroke_mm);
   PeriodicSolver solver(operators, frequency_Hz, model.steps_per_period, options.periodic);
   std::optional<FlowIndicator> indicator;
-  if (options.estimate_errors) indicator.emplace(operators, frequency_Hz, model.steps_per_period);
+  if (options.estimate_errors) indicator.emplace(model.operators, frequency_Hz, model.steps_per_period);
 
   std::vector<double> heads(heads_mmHg.size());
   std::transform(heads_mmHg.begin(), heads_mmHg.end(), heads.begin(), units::pressure_from_mmHg);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/units.hpp"
+#include "condense.hpp"
 #include "error_estimate.hpp"
 #include "periodic.hpp"
 #include "training/periodic_run.hpp"
@@ -80,7 +81,8 @@ ProjectedRun project_run(const PreparedScene& prepared, const Scene& scene, cons
 
 RunErrors judge_run(const rom::Operators& full, int velocity_modes, int pressure_modes,
                     int displacement_modes, int steps_per_period, const ProjectedRun& run) {
-  const auto reduced = rom::restrict_operators(full, velocity_modes, pressure_modes, displacement_modes);
+  const auto reduced = rom::condense_pressure(
+      rom::restrict_operators(full, velocity_modes, pressure_modes, displacement_modes));
   const auto begin = std::chrono::steady_clock::now();
   rom::PeriodicOptions options;
   options.march_periods = 0; // a direct failure is reported, not waited for
@@ -172,7 +174,8 @@ void calibrate_model(rom::Model& model, std::span<const ProjectedRun> runs) {
     reference.fom_seconds = run.fom_seconds;
     model.references.push_back(reference);
     if (!run.held_out || !errors.converged) continue;
-    rom::PeriodicSolver solver(full, run.point.frequency, model.steps_per_period);
+    const auto condensed = rom::condense_pressure(full);
+    rom::PeriodicSolver solver(condensed, run.point.frequency, model.steps_per_period);
     const auto state = solver.solve(run.point.stroke, run.point.head);
     rom::FlowIndicator indicator(full, run.point.frequency, model.steps_per_period);
     indicators.push_back(units::flow_to_l_per_min(indicator(run.point.stroke, run.point.head, state)));
