@@ -74,7 +74,8 @@ SceneStamp stamp_campaign(const Scene& scene) {
   auto stamp = stamp_scene(common);
   stamp.hash += "-" + std::to_string(scene.time.periods) + "-" +
                 std::to_string(scene.training.sampled_periods) + "-" +
-                std::to_string(scene.training.snapshots_per_period);
+                std::to_string(scene.training.snapshots_per_period) + "-" +
+                exact_number(scene.training.periodic_tolerance);
   return stamp;
 }
 
