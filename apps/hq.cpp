@@ -33,6 +33,7 @@ struct HqCommandOptions {
   std::optional<double> stroke_mm;
   std::string heads;
   std::string data;
+  std::string runs;
   std::string picture;
   bool json = false;
   std::vector<std::string> overrides;
@@ -51,7 +52,7 @@ void hq_of_model(const HqCommandOptions& options) {
   if (!options.picture.empty()) {
     check_picture_name(options.picture);
   }
-  const rom::Model model = rom::load_model(options.model);
+  rom::Model model = rom::load_model(options.model);
   constexpr int default_points = 12;
   const std::vector<double> heads =
       options.heads.empty() ? even_heads(model.box.head_low_mmHg, model.box.head_high_mmHg, default_points)
@@ -59,6 +60,18 @@ void hq_of_model(const HqCommandOptions& options) {
   std::optional<MeasuredCurve> measured;
   if (!options.data.empty()) {
     measured = read_measured_curve(options.data);
+  }
+
+  if (!options.runs.empty()) {
+    const SceneCurve runs = read_scene_curve(options.runs);
+    for (std::size_t i = 0; i < runs.head_mmHg.size(); ++i) {
+      rom::ReferencePoint run;
+      run.frequency_Hz = runs.frequency_Hz;
+      run.stroke_mm = runs.stroke_mm;
+      run.head_mmHg = runs.head_mmHg[i];
+      run.flow_l_per_min = runs.flow_l_per_min[i];
+      model.references.push_back(run);
+    }
   }
 
   // 2. The curve, and how far it can be trusted.
@@ -153,6 +166,8 @@ void add_hq_command(CLI::App& app) {
       "--head", options->heads,
       "heads in mmHg, low:high:step or a list with commas; default: 12 over the training box");
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)");
+  command->add_option("--runs", options->runs,
+                      "full-order runs to draw beside a model (what `hq SCENE --json` prints)");
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");
   command

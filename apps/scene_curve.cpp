@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/text_table.hpp"
+#include "base/error.hpp"
 #include "base/units.hpp"
+#include "fom/io/text_file.hpp"
 
 namespace undula {
 
@@ -78,6 +80,23 @@ std::string scene_curve_json(const Scene& scene, int unknowns, std::span<const S
                                 {"seconds", point.seconds}});
   }
   return result.dump(2) + "\n";
+}
+
+SceneCurve read_scene_curve(const std::filesystem::path& file) {
+  try {
+    const auto json = nlohmann::json::parse(read_text_file(file));
+    SceneCurve curve;
+    curve.frequency_Hz = json.at("frequency_Hz").get<double>();
+    curve.stroke_mm = json.at("stroke_mm").get<double>();
+    for (const auto& point : json.at("points")) {
+      curve.head_mmHg.push_back(point.at("head_mmHg").get<double>());
+      curve.flow_l_per_min.push_back(point.at("flow_l_per_min").get<double>());
+    }
+    return curve;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError("a file of full-order runs cannot be read", error.what(),
+                     "what `undula hq SCENE --json` prints", file.string());
+  }
 }
 
 } // namespace undula

@@ -1,9 +1,11 @@
 // A head-flow curve of full-order runs as table and JSON.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/phase_timer.hpp"
 #include "fom/scene/scene.hpp"
@@ -26,6 +28,15 @@ struct ScenePoint {
 
 ScenePoint scene_point(const RunRecord& record);
 std::string scene_curve_table(std::span<const ScenePoint> points);
+/// What scene_curve_json writes, read back.
+struct SceneCurve {
+  double frequency_Hz = 0, stroke_mm = 0;
+  std::vector<double> head_mmHg, flow_l_per_min; ///< same length
+};
+
+/// Reads a file printed by `undula hq SCENE --json`. Throws InputError for a missing file or another content.
+SceneCurve read_scene_curve(const std::filesystem::path& file);
+
 std::string scene_curve_json(const Scene& scene, int unknowns, std::span<const ScenePoint> points,
                              const PhaseTimer& preparation);
 
