@@ -18,10 +18,9 @@
 #include "apps/mpi_session.hpp"
 #include "apps/progress.hpp"
 #include "apps/scene_curve.hpp"
+#include "apps/scene_flow.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
-#include "fom/io/text_file.hpp"
-#include "fom/scene/scene_file.hpp"
 #include "training/periodic_run.hpp"
 
 namespace undula {
@@ -106,14 +105,8 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
     throw InputError("comparing full-order runs with data is the task of another command", options.model,
                      "undula validate SCENE --data FILE --plot PICTURE", "the command line");
   }
-  std::vector<std::string> overrides = options.overrides;
-  if (options.frequency_Hz) {
-    overrides.push_back("operating_point.frequency_Hz=" + exact_number(*options.frequency_Hz));
-  }
-  if (options.stroke_mm) {
-    overrides.push_back("operating_point.stroke_mm=" + exact_number(*options.stroke_mm));
-  }
-  const Scene scene = read_scene(options.model, overrides);
+  const Scene scene =
+      read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
   const std::vector<double> heads = parse_heads(options.heads);
 
   // 2. One full-order run to its periodic state per head; meshes and operators are shared.

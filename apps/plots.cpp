@@ -131,8 +131,8 @@ bool plot_field(const std::filesystem::path& picture, const std::string& title, 
   const std::string last_triangle = std::to_string(field.triangles.size() - 1);
   std::vector<std::string> items = {"data index 0:" + last_triangle + " using 1:2:3 with pm3d notitle"};
 
-  // 2. Outlines over the triangles, each a block of its own: lines in one block that have equal numbers of points
-  // would be joined as a grid.
+  // 2. Outlines over the triangles, each a block of its own: lines in one block that have equal numbers of
+  // points would be joined as a grid.
   if (!outlines.empty()) {
     for (const auto& outline : outlines) {
       data += "# outline: r (cm), z (cm)\n";

@@ -1,8 +1,21 @@
 #include "apps/scene_flow.hpp"
 
 #include "base/units.hpp"
+#include "fom/io/text_file.hpp"
+#include "fom/scene/scene_file.hpp"
 
 namespace undula {
+
+Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
+                    const std::optional<double>& frequency_Hz, const std::optional<double>& stroke_mm) {
+  if (frequency_Hz) {
+    overrides.push_back("operating_point.frequency_Hz=" + exact_number(*frequency_Hz));
+  }
+  if (stroke_mm) {
+    overrides.push_back("operating_point.stroke_mm=" + exact_number(*stroke_mm));
+  }
+  return read_scene(file, overrides);
+}
 
 FlowAtHead flow_of_scene(PreparedScene& prepared, const Scene& scene, const std::function<void()>& on_step) {
   return [&prepared, scene, &on_step](double head_mmHg) {

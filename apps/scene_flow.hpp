@@ -4,11 +4,18 @@
 #include <mpi.h>
 
 #include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/validation.hpp"
 #include "fom/simulation.hpp"
 
 namespace undula {
+
+/// Reads a scene with `--set` overrides, then `--frequency` and `--stroke` where they are given.
+Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
+                    const std::optional<double>& frequency_Hz, const std::optional<double>& stroke_mm);
 
 /// Runs the scene from rest at each head, on meshes and operators prepared once, and takes the mean outflow
 /// of its last period. `prepared` and `on_step` (called after every step) must outlive the function. Calls

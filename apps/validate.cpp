@@ -22,9 +22,7 @@
 #include "apps/validation.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
-#include "fom/io/text_file.hpp"
 #include "fom/root_rank.hpp"
-#include "fom/scene/scene_file.hpp"
 #include "hq_curve.hpp"
 #include "model.hpp"
 
@@ -169,14 +167,8 @@ void validate_model(const ValidateOptions& options) {
 void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
   // 1. Read the scene and the measured curve; choose the heads.
   const Comparison comparison = read_comparison(options);
-  std::vector<std::string> overrides = options.overrides;
-  if (options.frequency_Hz) {
-    overrides.push_back("operating_point.frequency_Hz=" + exact_number(*options.frequency_Hz));
-  }
-  if (options.stroke_mm) {
-    overrides.push_back("operating_point.stroke_mm=" + exact_number(*options.stroke_mm));
-  }
-  const Scene scene = read_scene(options.model, overrides);
+  const Scene scene =
+      read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
 
   // 2. Meshes and operators, shared by all heads.
   PhaseTimer timer;

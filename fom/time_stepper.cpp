@@ -173,6 +173,14 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
 template <int dim>
 int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
                  int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x) {
+  bool elastic = false;
+  for (int unknown = disc.fluid_unknowns(); unknown < disc.unknowns(); ++unknown)
+    elastic = elastic || !disc.is_constrained[unknown];
+  if (elastic && !disc.cut.interface.empty())
+    throw InputError("the steady state of elastic solids in a fluid is not computed directly",
+                     "solids with nodes that are free to move, in contact with fluid",
+                     "imposed solids in a fluid, or solids in vacuo; otherwise a run in time",
+                     "FsiProblem::solids");
   LinearSystem<dim> system(disc, operators, 1, timer);
   Eigen::VectorXd rhs = loads_at(disc, operators, 0.0);
   for (const auto& constrained : disc.constrained)

@@ -71,8 +71,9 @@ private:
   Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step
 };
 
-/// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids, if any,
-/// are at rest under their static loads (their unknowns are displacements here). Returns the iterations
+/// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids in vacuo
+/// are at rest under their static loads (their unknowns are displacements here); solids in a fluid have to be
+/// imposed throughout, else InputError. Returns the iterations
 /// taken. Throws NumericsError when `max_iterations` do not suffice.
 template <int dim>
 int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,

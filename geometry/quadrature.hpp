@@ -8,7 +8,8 @@
 
 namespace undula {
 
-/// Points and weights in physical space; weights are plain (no factor r): the measure is applied by the forms.
+/// Points and weights in physical space; weights are plain (no factor r): the measure is applied by the
+/// forms.
 template <int dim>
 struct QuadratureSet {
   std::vector<Point<dim>> points; ///< cm

@@ -25,16 +25,17 @@ struct SimplexMesh {
   std::vector<Point<dim>> points;              ///< cm
   std::vector<std::array<int, dim + 1>> cells; ///< point indices, positively oriented
   std::vector<BoundaryFacet<dim>> boundary;    ///< every facet with one cell only, once
-  std::vector<std::string> boundary_names;     ///< name of boundary tag i, e.g. "wall", "axis", "inlet", "outlet"
+  std::vector<std::string> boundary_names; ///< name of boundary tag i, e.g. "wall", "axis", "inlet", "outlet"
 };
 
-/// A facet of a mesh with its one or two cells. `local[k]` is the vertex of cell `cells[k]` opposite the facet.
+/// A facet of a mesh with its one or two cells. `local[k]` is the vertex of cell `cells[k]` opposite the
+/// facet.
 template <int dim>
 struct Facet {
-  std::array<int, dim> points;        ///< ascending
-  std::array<int, 2> cells{-1, -1};   ///< cells[1] = -1 on the boundary
+  std::array<int, dim> points;      ///< ascending
+  std::array<int, 2> cells{-1, -1}; ///< cells[1] = -1 on the boundary
   std::array<int, 2> local{-1, -1};
-  int boundary_tag = -1;              ///< -1 inside
+  int boundary_tag = -1; ///< -1 inside
 };
 
 /// All facets of a mesh and, per cell, the facet opposite each of its vertices.

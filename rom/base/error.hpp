@@ -20,7 +20,8 @@ public:
 /// States what failed, at which step, time and place, and what to try.
 class NumericsError : public std::runtime_error {
 public:
-  NumericsError(const std::string& what_failed, const std::string& step_time_place, const std::string& what_to_try)
+  NumericsError(const std::string& what_failed, const std::string& step_time_place,
+                const std::string& what_to_try)
       : std::runtime_error(what_failed + "\n  at:  " + step_time_place + "\n  try: " + what_to_try) {}
 };
 
