@@ -19,6 +19,7 @@
 #include "apps/progress.hpp"
 #include "apps/scene_curve.hpp"
 #include "apps/scene_flow.hpp"
+#include "apps/text_table.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "training/periodic_run.hpp"
@@ -86,6 +87,8 @@ void hq_of_model(const HqCommandOptions& options) {
       spdlog::warn("no periodic state at {} mmHg: the flow is the mean of the last period", point.head_mmHg);
     }
   }
+
+  spdlog::info("{} points in {} ms", points.size(), decimals(elapsed.count(), 0));
 
   // 3. Numbers to stdout, picture beside them.
   const HqReport report = {options.model, *options.frequency_Hz,           *options.stroke_mm,

@@ -46,8 +46,7 @@ std::string hq_table(const HqReport& report) {
     }
     rows.push_back(std::move(row));
   }
-  return text_table(header, rows) + std::to_string(report.points.size()) + " points in " +
-         decimals(report.milliseconds, 0) + " ms\n";
+  return text_table(header, rows);
 }
 
 std::string hq_json(const HqReport& report) {

@@ -147,7 +147,7 @@ TEST(FluidCylinder, CoarseVortexStreet) {
 TEST(FluidCylinder, DISABLED_VortexStreet) {
   auto weights = default_weights(1.0, 0.1);
   weights.velocity_jump = weights.divergence = 0.01;
-  const auto street = vortex_street(40, 0.004, 4.0, weights);
+  const auto street = vortex_street(40, 0.002, 4.0, weights);
   ASSERT_GE(street.periods, 3);
   EXPECT_LT(std::abs(street.strouhal / 0.301841 - 1), 0.02);
   EXPECT_LT(std::abs(street.drag_max / 3.227 - 1), 0.02);

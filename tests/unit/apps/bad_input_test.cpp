@@ -80,10 +80,10 @@ TEST(BadInput, MissingFilesAreNamed) {
 
 TEST(BadInput, AForeignFileIsNotAModel) {
   const ScratchFolder folder;
-  expect_one_refusal(run_undula({"hq", UNDULA_SOURCE_DIR "/data/scenes/wave_pump_fixed.toml", "--frequency",
-                                 "120", "--stroke", "0.5"},
+  expect_one_refusal(run_undula({"hq", UNDULA_SOURCE_DIR "/data/measured/corwave_120hz_0.53mm.csv",
+                                 "--frequency", "120", "--stroke", "0.5"},
                                 folder.path()),
-                     {"wave_pump_fixed.toml"});
+                     {"corwave_120hz_0.53mm.csv"});
 }
 
 TEST(BadInput, ATruncatedModelIsRefused) {
