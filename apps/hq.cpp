@@ -88,7 +88,9 @@ void hq_of_model(const HqCommandOptions& options) {
     }
   }
 
-  spdlog::info("{} points in {} ms", points.size(), decimals(elapsed.count(), 0));
+  if (!options.json) { // JSON holds the time itself
+    spdlog::info("{} points in {} ms", points.size(), decimals(elapsed.count(), 0));
+  }
 
   // 3. Numbers to stdout, picture beside them.
   const HqReport report = {options.model, *options.frequency_Hz,           *options.stroke_mm,
