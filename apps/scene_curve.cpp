@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "fom/io/text_file.hpp"
+#include "training/run_summary.hpp"
 
 namespace undula {
 
@@ -27,17 +28,13 @@ ScenePoint scene_point(const RunRecord& record) {
            static_cast<std::size_t>(found - cycles.columns.begin());
   };
   const int last = point.periods - 1;
-  point.flow_l_per_min = cycles.mean[place("outflow_l_per_min", last)];
+  const LastPeriods outflow = last_periods(cycles, "outflow_l_per_min");
+  point.flow_l_per_min = outflow.mean;
+  point.spread_l_per_min = outflow.spread;
   point.inflow_l_per_min = cycles.mean[place("inflow_l_per_min", last)];
   point.power_mW = cycles.mean[place("hydraulic_power_mW", last)];
   point.speed_max_cm_per_s = cycles.maximum[place("speed_max_cm_per_s", last)];
   point.clearance_min_mm = cycles.minimum[place("clearance_min_mm", last)];
-  double low = point.flow_l_per_min, high = low;
-  for (int period = std::max(0, last - 2); period <= last; ++period) {
-    low = std::min(low, cycles.mean[place("outflow_l_per_min", period)]);
-    high = std::max(high, cycles.mean[place("outflow_l_per_min", period)]);
-  }
-  point.spread_l_per_min = high - low;
   return point;
 }
 

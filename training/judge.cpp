@@ -10,6 +10,7 @@
 #include "error_estimate.hpp"
 #include "periodic.hpp"
 #include "training/periodic_run.hpp"
+#include "training/run_summary.hpp"
 
 namespace undula {
 
@@ -39,19 +40,9 @@ ProjectedRun project_run(const PreparedScene& prepared, const Scene& scene, cons
   ProjectedRun projected;
   projected.point = run.point;
   projected.held_out = held_out;
-  const auto column = std::find(run.cycles.columns.begin(), run.cycles.columns.end(), "outflow_l_per_min") -
-                      run.cycles.columns.begin();
-  const std::size_t periods = run.cycles.periods.size(), columns = run.cycles.columns.size();
-  const auto mean = [&](std::size_t period) {
-    return units::flow_from_l_per_min(run.cycles.mean[period * columns + static_cast<std::size_t>(column)]);
-  };
-  projected.flow = mean(periods - 1);
-  double low = projected.flow, high = projected.flow;
-  for (std::size_t p = periods - std::min<std::size_t>(periods, 3); p < periods; ++p) {
-    low = std::min(low, mean(p));
-    high = std::max(high, mean(p));
-  }
-  projected.flow_spread = high - low;
+  const auto outflow = last_periods(run.cycles, "outflow_l_per_min");
+  projected.flow = units::flow_from_l_per_min(outflow.mean);
+  projected.flow_spread = units::flow_from_l_per_min(outflow.spread);
   projected.fom_seconds = run.seconds.at("total");
 
   const auto velocity_rows = velocity_unknowns(disc), solid_rows = displacement_unknowns(disc);
