@@ -16,7 +16,7 @@ double smooth_ramp(double t, double duration) {
 
 double holder_displacement(const Scene& scene, double t) {
   const auto& point = scene.operating_point;
-  return point.stroke * smooth_ramp(t, scene.time.ramp_periods / point.frequency) *
+  return point.stroke_scale * point.stroke * smooth_ramp(t, scene.time.ramp_periods / point.frequency) *
          std::sin(2 * std::numbers::pi * point.frequency * t);
 }
 

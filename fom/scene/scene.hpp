@@ -8,10 +8,16 @@
 
 namespace undula {
 
-enum class Space { plane, axisymmetric };
+enum class Space { plane, axisymmetric, thin_gap };
 enum class Extent { full };
-enum class Coupling { fixed };
-enum class SolidModel { linear };
+enum class Coupling {
+  fixed,    ///< the displacement does not move the fluid domain
+  implicit, ///< fluid domain and displacement of the same instant (thin gap)
+};
+enum class SolidModel {
+  linear,
+  von_karman, ///< of a plate: stretching by moderate slopes (thin gap)
+};
 enum class Interface { no_slip };
 enum class FlowModel { stokes, navier_stokes };
 enum class TimeScheme { bdf1, bdf2 };
@@ -19,6 +25,12 @@ enum class OpeningCondition {
   total_pressure,  ///< sigma n = -p n + rho/2 (u.n) u: energy-neutral, safe against in- and backflow
   static_pressure, ///< the same on inflow only; plain traction on outflow
   traction,        ///< plain traction on both; for verification, blows up on strong inflow
+};
+
+/// Wall friction in a thin gap.
+enum class GapFriction {
+  poiseuille,  ///< developed laminar profile, 12 viscosity u / height^2
+  oscillatory, ///< no weaker than that of two Stokes layers, 2 viscosity u / (height * layer)
 };
 
 /// What keeps the reduced pressure stable.
@@ -40,9 +52,10 @@ struct SolidProperties {
 };
 
 struct OperatingPoint {
-  double frequency = 0; ///< Hz
-  double stroke = 0;    ///< cm, amplitude Phi of the holder
-  double head = 0;      ///< dyn/cm^2, outlet pressure minus inlet pressure
+  double frequency = 0;    ///< Hz
+  double stroke = 0;       ///< cm, amplitude Phi of the holder
+  double head = 0;         ///< dyn/cm^2, outlet pressure minus inlet pressure
+  double stroke_scale = 1; ///< the holder moves by stroke_scale * stroke
 };
 
 struct MeshSizes {
@@ -75,6 +88,25 @@ struct StabilisationWeights {
   double reference_time = 0;     ///< s
 };
 
+/// Radial flow in the gaps above and below the membrane, modelled as an annular plate (Space::thin_gap).
+struct ThinGapSettings {
+  int cells = 0;                ///< over the membrane's radius, tip to rim
+  double film_thickness = 0;    ///< cm, gap height at which contact sets in
+  double contact_stiffness = 0; ///< contact pressure per depth below the film thickness, dyn/cm^3
+  double throat_recovery = 0;   ///< part of the kinetic energy that returns to pressure where flow slows down
+  double exit_recovery = 0;     ///< the same where a gap ends
+  double entry_loss = 0;        ///< lost at an entry, in parts of the kinetic energy
+  double momentum_factor = 0;   ///< of the velocity profile: 1 plug, 6/5 parabola
+  GapFriction friction = GapFriction::poiseuille;
+  double newton_tolerance = 0; ///< change of the unknowns at which Newton ends, relative to their scales
+};
+
+/// An input known within bounds: half the width of the interval that holds it with 95 % probability.
+struct Tolerance {
+  std::string key;      ///< path in the scene table, "operating_point.stroke_mm"
+  double tolerance = 0; ///< in the unit of the key
+};
+
 /// Box of a training campaign.
 struct TrainingPlan {
   double frequency_low = 0, frequency_high = 0; ///< Hz
@@ -102,6 +134,8 @@ struct Scene {
   std::filesystem::path profile;    ///< pump profile (TOML); relative paths in the scene are relative to it
   std::filesystem::path fluid_mesh; ///< Gmsh meshes instead of a profile; both empty otherwise
   std::vector<std::filesystem::path> solid_meshes;
+  double clearance_scale = 1; ///< of the clearances between membrane and flanges in the profile
+  double rim_gap_scale = 1;   ///< of the gap between the membrane's rim and the housing in the profile
   Space space = Space::axisymmetric;
   Extent extent = Extent::full;
   Coupling coupling = Coupling::fixed;
@@ -117,8 +151,10 @@ struct Scene {
   MeshSizes mesh;
   TimeSettings time;
   StabilisationWeights stabilisation;
+  ThinGapSettings thin_gap;
   TrainingPlan training;
   OutputSettings output;
+  std::vector<Tolerance> tolerances; ///< of inputs stated as { value = ..., tolerance = ... }
 };
 
 } // namespace undula

@@ -30,6 +30,25 @@ void check_clamp(const Scene& scene, const std::string& where) {
   }
 }
 
+void check_levels(const Scene& scene, const std::string& where) {
+  const bool thin_gap = scene.space == Space::thin_gap;
+  if (thin_gap != (scene.coupling == Coupling::implicit)) {
+    throw InputError("the geometric coupling does not go with the space",
+                     thin_gap ? "coupling = \"fixed\" in thin gaps" : "coupling = \"implicit\"",
+                     thin_gap ? "coupling = \"implicit\": gaps follow the membrane"
+                              : "coupling = \"fixed\", or space = \"thin-gap\"",
+                     where + ", section [model]");
+  }
+  if (!thin_gap && scene.solid_model == SolidModel::von_karman) {
+    throw InputError("the solid does not go with the space", "solid = \"von-karman\"",
+                     "solid = \"linear\", or space = \"thin-gap\"", where + ", section [model]");
+  }
+  if (thin_gap && scene.profile.empty()) {
+    throw InputError("thin gaps need a profile", "meshes in its place", "\"geometry.profile\"",
+                     where + ", section [geometry]");
+  }
+}
+
 void check_time(const Scene& scene, const std::string& where) {
   if (scene.time.ramp_periods > scene.time.periods) {
     throw InputError("the smooth start is longer than the run",
@@ -71,6 +90,7 @@ void check_training(const Scene& scene, const std::string& where) {
 void check_consistency(const Scene& scene, const std::string& where) {
   check_geometry(scene, where);
   check_clamp(scene, where);
+  check_levels(scene, where);
   check_time(scene, where);
   check_training(scene, where);
 }

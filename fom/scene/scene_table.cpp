@@ -39,18 +39,27 @@ std::vector<SceneKey> model_keys() {
   return {
       {"name", "", "label of the computation, used in file names and plots", leaves_state,
        TextKey{FIELD(name)}},
-      {"model.space", "", "space the equations are solved in", shapes_state,
-       choice<FIELD(space)>({name("axisymmetric", Space::axisymmetric), name("plane", Space::plane)},
-                            {"3d", "thin-gap"}, "axisymmetric")},
+      {"model.space", "",
+       "space the equations are solved in; `thin-gap`: radial flow in the two gaps along an annular plate",
+       shapes_state,
+       choice<FIELD(space)>({name("axisymmetric", Space::axisymmetric), name("plane", Space::plane),
+                             name("thin-gap", Space::thin_gap)},
+                            {"3d"}, "axisymmetric")},
       {"model.extent", "", "part of the pump that is computed", shapes_state,
        choice<FIELD(extent)>({name("full", Extent::full)}, {"head", "lower"}, "full")},
       {"model.coupling", "",
-       "geometric coupling; `fixed`: the displacement does not move the fluid domain, one cut", shapes_state,
-       choice<FIELD(coupling)>({name("fixed", Coupling::fixed)}, {"mapped", "explicit", "implicit"},
-                               "fixed")},
-      {"model.solid", "", "constitutive law of the membrane", shapes_state,
-       choice<FIELD(solid_model)>({name("linear", SolidModel::linear)},
-                                  {"saint-venant-kirchhoff", "neo-hookean"}, "linear")},
+       "geometric coupling; `fixed`: the displacement does not move the fluid domain, one cut; `implicit`: "
+       "it "
+       "does, at the same instant (thin gap only)",
+       shapes_state,
+       choice<FIELD(coupling)>({name("fixed", Coupling::fixed), name("implicit", Coupling::implicit)},
+                               {"mapped", "explicit"}, "fixed")},
+      {"model.solid", "",
+       "constitutive law of the membrane; `von-karman`: plate stretched by its slopes (thin gap only)",
+       shapes_state,
+       choice<FIELD(solid_model)>(
+           {name("linear", SolidModel::linear), name("von-karman", SolidModel::von_karman)},
+           {"saint-venant-kirchhoff", "neo-hookean"}, "linear")},
       {"model.interface", "", "condition between fluid and solid", shapes_state,
        choice<FIELD(interface)>({name("no-slip", Interface::no_slip)}, {"slip"}, "no-slip")},
       {"model.flow", "", "flow equations; `stokes` leaves convection out", shapes_state,
@@ -68,6 +77,12 @@ std::vector<SceneKey> model_keys() {
                              {}, "total-pressure")},
       {"geometry.profile", "", "pump profile (TOML); a relative path starts at the scene file", shapes_state,
        FileKey{FIELD(profile)}},
+      {"geometry.clearance_scale", "",
+       "factor on the clearances between membrane and flanges of the profile, by moving the flanges",
+       shapes_state, RealKey{FIELD(clearance_scale), 1, from_to(0.1, 10), 1.0}},
+      {"geometry.rim_gap_scale", "",
+       "factor on the gap between the membrane's rim and the housing of the profile, by moving the rim",
+       shapes_state, RealKey{FIELD(rim_gap_scale), 1, from_to(0.1, 10), 1.0}},
       {"geometry.fluid_mesh", "", "Gmsh mesh of the fluid background, in place of a profile", shapes_state,
        FileKey{FIELD(fluid_mesh)}},
       {"geometry.solid_meshes", "", "Gmsh meshes of the solids, with `fluid_mesh`", shapes_state,
@@ -98,6 +113,9 @@ std::vector<SceneKey> physics_keys() {
        RealKey{FIELD(operating_point.frequency), 1, above_to(0, 1e5), {}}},
       {"operating_point.stroke_mm", "mm", "amplitude of the imposed motion, stroke * sin(2 pi f t)",
        shapes_state, RealKey{FIELD(operating_point.stroke), cm_per_mm, from_to(0, 100), {}}},
+      {"operating_point.stroke_scale", "",
+       "factor on the stroke: what the holder does of what the actuator is said to do", shapes_state,
+       RealKey{FIELD(operating_point.stroke_scale), 1, from_to(0, 10), 1.0}},
       {"operating_point.head_mmHg", "mmHg", "outlet pressure minus inlet pressure", shapes_state,
        RealKey{FIELD(operating_point.head), mmHg, from_to(-1e4, 1e4), {}}},
   };
@@ -156,6 +174,43 @@ std::vector<SceneKey> stabilisation_keys() {
        shapes_state, RealKey{FIELD(stabilisation.reference_velocity), 1, above_to(0, 1e6), 100.0}},
       {"stabilisation.reference_time_s", "s", "time that scales the weights", shapes_state,
        RealKey{FIELD(stabilisation.reference_time), 1, above_to(0, 1e6), 2e-4}},
+  };
+}
+
+std::vector<SceneKey> thin_gap_keys() {
+  const auto part = [](const char* path, const char* help, double& (*field)(Scene&), double high,
+                       double fallback) {
+    return SceneKey{path, "", help, shapes_state, RealKey{field, 1, from_to(0, high), fallback}};
+  };
+  return {
+      {"thin_gap.cells", "", "cells over the membrane's radius, from the tip to the rim", shapes_state,
+       IntegerKey{FIELD(thin_gap.cells), 8, 10000, 96}},
+      {"thin_gap.film_thickness_mm", "mm", "height of a gap at which contact with the wall sets in",
+       shapes_state, RealKey{FIELD(thin_gap.film_thickness), cm_per_mm, above_to(0, 10), 0.05}},
+      {"thin_gap.contact_stiffness_dyn_per_cm3", "dyn_per_cm3",
+       "pressure of contact per depth below the film thickness", shapes_state,
+       RealKey{FIELD(thin_gap.contact_stiffness), 1, from_to(0, 1e15), 1e8}},
+      part("thin_gap.throat_recovery",
+           "part of the kinetic energy that returns to pressure where the flow of a gap slows down; 1: "
+           "Bernoulli",
+           FIELD(thin_gap.throat_recovery), 1, 0.0),
+      part("thin_gap.exit_recovery", "the same where the flow leaves a gap or a channel",
+           FIELD(thin_gap.exit_recovery), 1, 0.0),
+      part("thin_gap.entry_loss",
+           "kinetic energy lost where the flow enters a gap or a channel, as a part of it",
+           FIELD(thin_gap.entry_loss), 10, 0.5),
+      {"thin_gap.momentum_factor", "",
+       "of the velocity over a gap's height: 1 for a plug, 1.2 for a parabola", shapes_state,
+       RealKey{FIELD(thin_gap.momentum_factor), 1, from_to(1, 2), 1.0}},
+      {"thin_gap.friction", "",
+       "wall friction; `oscillatory`: no weaker than that of two Stokes layers of the actuator's frequency",
+       shapes_state,
+       choice<FIELD(thin_gap.friction)>(
+           {name("poiseuille", GapFriction::poiseuille), name("oscillatory", GapFriction::oscillatory)}, {},
+           "poiseuille")},
+      {"thin_gap.newton_tolerance", "",
+       "change of the unknowns at which Newton ends, relative to their scales", shapes_state,
+       RealKey{FIELD(thin_gap.newton_tolerance), 1, between(0, 1), 1e-6}},
   };
 }
 
@@ -220,7 +275,8 @@ std::vector<SceneKey> training_keys() {
 std::span<const SceneKey> scene_table() {
   static const std::vector<SceneKey> table = [] {
     std::vector<SceneKey> all;
-    for (auto part : {model_keys(), physics_keys(), numerics_keys(), stabilisation_keys(), training_keys()}) {
+    for (auto part : {model_keys(), physics_keys(), numerics_keys(), stabilisation_keys(), thin_gap_keys(),
+                      training_keys()}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     return all;
@@ -229,7 +285,7 @@ std::span<const SceneKey> scene_table() {
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 10> help = {{
+  static const std::array<std::pair<const char*, const char*>, 11> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
       {"geometry", "Either a profile, or meshes made elsewhere."},
       {"fluid", "Newtonian, incompressible."},
@@ -240,6 +296,9 @@ std::string section_help(const std::string& section) {
       {"output", "Files besides the time series and the cycle means."},
       {"stabilisation",
        "Weights of the stabilised cut finite elements. One set serves all operating points."},
+      {"thin_gap",
+       "Closures of the thin-gap level (`model.space = \"thin-gap\"`). Heights, areas and inertances "
+       "come from the profile."},
       {"training", "Box, sampling plan and basis of a reduced model."},
   }};
   for (const auto& [key, text] : help) {
