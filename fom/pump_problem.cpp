@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "geometry/gmsh_import.hpp"
+#include "geometry/profile_scale.hpp"
 #include "geometry/pump.hpp"
 
 namespace undula {
@@ -25,6 +26,10 @@ double outlet_pressure(const Scene& scene, double t) {
   return point.head * smooth_ramp(t, scene.time.ramp_periods / point.frequency);
 }
 
+PumpProfile scene_profile(const Scene& scene) {
+  return scale_clearances(read_pump_profile(scene.profile), scene.clearance_scale, scene.rim_gap_scale);
+}
+
 namespace {
 
 struct PumpMeshes {
@@ -41,7 +46,7 @@ PumpMeshes pump_meshes(const Scene& scene) {
     for (const auto& file : scene.solid_meshes) meshes.solids.push_back(import_gmsh<2>(file).mesh);
     return meshes;
   }
-  const auto profile = read_pump_profile(scene.profile);
+  const auto profile = scene_profile(scene);
   const PumpMeshSizes sizes{scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
                             scene.mesh.growth};
   meshes.background = pump_background(profile, sizes);

@@ -3,6 +3,7 @@
 
 #include "fom/problem.hpp"
 #include "fom/scene/scene.hpp"
+#include "geometry/profile.hpp"
 
 namespace undula {
 
@@ -14,6 +15,10 @@ double holder_displacement(const Scene& scene, double t);
 
 /// Pressure at the outlet, head times ramp(t), dyn/cm^2; the inlet is at zero.
 double outlet_pressure(const Scene& scene, double t);
+
+/// The profile of a scene that names one, with its gaps scaled as the scene says (scale_clearances). Throws
+/// InputError for a missing or bad profile, and for scales it does not bear.
+PumpProfile scene_profile(const Scene& scene);
 
 /// Meshes (from the profile, or the Gmsh files of the scene) and conditions. Solid 0 is the membrane; the
 /// others (magnet ring) move with the holder. Names of the openings: "inlet", "outlet"; every boundary other
