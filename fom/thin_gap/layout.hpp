@@ -18,7 +18,7 @@ struct Passage {
 
 /// Nodes over the radius, from the tip to the rim, and what lies above and below them at rest.
 struct ThinGapLayout {
-  std::vector<double> radius;    ///< cm, ascending, even steps
+  std::vector<double> radius;    ///< cm, ascending, even steps up to the clamp and beyond it
   std::vector<double> thickness; ///< cm, of the plate
   std::vector<double>
       upper_height; ///< cm, from the plate to the wall above, mean around the node; [0, channel]
@@ -32,6 +32,12 @@ struct ThinGapLayout {
   Passage rim;                      ///< past the rim, between the chambers below and above the holder
   Passage outlet;                   ///< from the tip through the bore to the outlet
 };
+
+/// Radius between a node and the one before it, cm; the ends of the membrane for node 0 and beyond the last.
+double face_radius(const ThinGapLayout& layout, int face);
+
+/// Area of the plate that belongs to a node, cm^2.
+double node_area(const ThinGapLayout& layout, int node);
 
 /// Derives a layout from a profile. `background` fills the outline of the profile (pump_background); the
 /// passages to inlet and outlet come from potential flow on it. Throws InputError naming what is missing
