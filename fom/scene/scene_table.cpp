@@ -184,7 +184,7 @@ std::vector<SceneKey> thin_gap_keys() {
   };
   return {
       {"thin_gap.cells", "", "cells over the membrane's radius, from the tip to the rim", shapes_state,
-       IntegerKey{FIELD(thin_gap.cells), 8, 10000, 96}},
+       IntegerKey{FIELD(thin_gap.cells), 16, 10000, 64}},
       {"thin_gap.film_thickness_mm", "mm", "height of a gap at which contact with the wall sets in",
        shapes_state, RealKey{FIELD(thin_gap.film_thickness), cm_per_mm, above_to(0, 10), 0.05}},
       {"thin_gap.contact_stiffness_dyn_per_cm3", "dyn_per_cm3",
@@ -210,7 +210,7 @@ std::vector<SceneKey> thin_gap_keys() {
            "poiseuille")},
       {"thin_gap.newton_tolerance", "",
        "change of the unknowns at which Newton ends, relative to their scales", shapes_state,
-       RealKey{FIELD(thin_gap.newton_tolerance), 1, between(0, 1), 1e-6}},
+       RealKey{FIELD(thin_gap.newton_tolerance), 1, between(0, 1), 1e-5}},
   };
 }
 

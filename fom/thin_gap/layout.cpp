@@ -16,6 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr int samples_per_step = 16; // of the heights around a node
+constexpr double tip_step = 0.25;    // first step of the free part, in parts of its mean step
 
 /// What lies above and below the membrane at rest.
 class Surroundings {
@@ -137,12 +138,17 @@ ThinGapLayout thin_gap_layout(const PumpProfile& profile, const SimplexMesh<2>& 
   const int held = std::clamp(
       static_cast<int>(std::lround(cells * (membrane.outer_radius - clamp_radius) / extent)), 1, cells - 1);
   layout.clamp = cells - held; // a node stands exactly where the holder begins
-  const double free_step = (clamp_radius - membrane.inner_radius) / layout.clamp;
+  const double free_length = clamp_radius - membrane.inner_radius;
   const double held_step = (membrane.outer_radius - clamp_radius) / held;
-  for (int i = 0; i <= cells; ++i)
-    layout.radius.push_back(i <= layout.clamp ? membrane.inner_radius + free_step * i
-                                              : clamp_radius + held_step * (i - layout.clamp));
-  layout.step = std::max(free_step, held_step);
+  for (int i = 0; i <= cells; ++i) {
+    // Steps grow linearly from the tip, where films close and jets leave.
+    const double s = static_cast<double>(i) / layout.clamp;
+    layout.radius.push_back(i <= layout.clamp
+                                ? membrane.inner_radius + free_length * s * (tip_step + (1 - tip_step) * s)
+                                : clamp_radius + held_step * (i - layout.clamp));
+  }
+  for (int i = 1; i <= cells; ++i)
+    layout.step = std::max(layout.step, layout.radius[i] - layout.radius[i - 1]);
   for (const double r : layout.radius) layout.thickness.push_back(membrane_thickness(membrane, r));
   const auto node_at = [&](double r) {
     const auto next = std::upper_bound(layout.radius.begin(), layout.radius.end(), r);

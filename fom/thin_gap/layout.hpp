@@ -18,7 +18,8 @@ struct Passage {
 
 /// Nodes over the radius, from the tip to the rim, and what lies above and below them at rest.
 struct ThinGapLayout {
-  std::vector<double> radius;    ///< cm, ascending, even steps up to the clamp and beyond it
+  std::vector<double>
+      radius; ///< cm, ascending, steps that grow from the tip to the clamp, even ones beyond it
   std::vector<double> thickness; ///< cm, of the plate
   std::vector<double>
       upper_height; ///< cm, from the plate to the wall above, mean around the node; [0, channel]

@@ -38,18 +38,31 @@ double face_length(const ThinGapLayout& layout, int face) {
 template <int count>
 using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, count, 1>>;
 
-template <int count>
-std::array<Dual<count>, count> read(const Eigen::VectorXd& x, const std::array<int, count>& places) {
-  std::array<Dual<count>, count> values;
-  for (int k = 0; k < count; ++k) values[k] = Dual<count>(x[places[k]], count, k);
+/// The same, or plain numbers where derivatives are not asked for.
+template <bool derive, int count>
+using Value = std::conditional_t<derive, Dual<count>, double>;
+
+template <bool derive, int count>
+std::array<Value<derive, count>, count> read(const Eigen::VectorXd& x, const std::array<int, count>& places) {
+  std::array<Value<derive, count>, count> values;
+  for (int k = 0; k < count; ++k) {
+    if constexpr (derive)
+      values[k] = Dual<count>(x[places[k]], count, k);
+    else
+      values[k] = x[places[k]];
+  }
   return values;
+}
+
+template <int count>
+void write(double value, int row, const std::array<int, count>&, Eigen::VectorXd& residual, BandMatrix*) {
+  residual[row] += value;
 }
 
 template <int count>
 void write(const Dual<count>& value, int row, const std::array<int, count>& places, Eigen::VectorXd& residual,
            BandMatrix* matrix) {
   residual[row] += value.value();
-  if (!matrix) return;
   for (int k = 0; k < count; ++k)
     if (value.derivatives()[k] != 0) (*matrix)(row, places[k]) += value.derivatives()[k];
 }
@@ -154,6 +167,7 @@ int flow_nodes(const ThinGapLayout& layout, Side side) {
   return side == Side::upper ? layout.channel : static_cast<int>(layout.radius.size());
 }
 
+template <bool derive>
 void assemble_gap(const ThinGapStep& step, Side side, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                   BandMatrix* matrix) {
   const auto& at = step.at;
@@ -162,7 +176,7 @@ void assemble_gap(const ThinGapStep& step, Side side, const Eigen::VectorXd& x, 
   {
     const std::array<int, 4> places = {flow_at(at, side, 0), at.tip_pressure, pressure_at(at, side, 0),
                                        at.deflection_rate(0)};
-    const auto y = read<4>(x, places);
+    const auto y = read<derive, 4>(x, places);
     write<4>(tip_momentum(step, y[0], y[1], y[2], height(step, side, 0, y[3])), places[0], places, residual,
              matrix);
   }
@@ -171,7 +185,7 @@ void assemble_gap(const ThinGapStep& step, Side side, const Eigen::VectorXd& x, 
                                        flow_at(at, side, face + 1), pressure_at(at, side, face - 1),
                                        pressure_at(at, side, face), at.deflection_rate(face - 1),
                                        at.deflection_rate(face)};
-    const auto y = read<7>(x, places);
+    const auto y = read<derive, 7>(x, places);
     write<7>(inner_momentum(step, side, face, y[0], y[1], y[2], y[3], y[4],
                             height(step, side, face - 1, y[5]), height(step, side, face, y[6])),
              places[1], places, residual, matrix);
@@ -180,7 +194,7 @@ void assemble_gap(const ThinGapStep& step, Side side, const Eigen::VectorXd& x, 
     const std::array<int, 6> places = {flow_at(at, side, last - 1),     flow_at(at, side, last),
                                        pressure_at(at, side, last - 1), pressure_at(at, side, last),
                                        at.deflection_rate(last - 1),    at.deflection_rate(last)};
-    const auto y = read<6>(x, places);
+    const auto y = read<derive, 6>(x, places);
     write<6>(chamber_momentum(step, y[0], y[1], y[2], y[3], height(step, side, last - 1, y[4]),
                               height(step, side, last, y[5])),
              places[1], places, residual, matrix);
@@ -208,6 +222,7 @@ void assemble_gap(const ThinGapStep& step, Side side, const Eigen::VectorXd& x, 
   }
 }
 
+template <bool derive>
 void assemble_passages(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                        BandMatrix* matrix) {
   const auto& at = step.at;
@@ -217,42 +232,43 @@ void assemble_passages(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen:
   { // Outlet; what enters through it goes into the gaps.
     const int upper = at.upper_flow(0), lower = at.lower_flow(0);
     const std::array<int, 3> places = {at.tip_pressure, upper, lower};
-    const auto y = read<3>(x, places);
-    const Dual<3> q = y[1] + y[2];
-    const Dual<3> drop = passage_drop(law, layout.outlet, channel_losses(law, step.scene->outlet), q,
-                                      time_derivative(step, q, history[upper] + history[lower]));
-    write<3>(Dual<3>(step.outlet_pressure - y[0] - drop), at.tip_pressure, places, residual, matrix);
+    const auto y = read<derive, 3>(x, places);
+    const Value<derive, 3> q = y[1] + y[2];
+    const Value<derive, 3> drop = passage_drop(law, layout.outlet, channel_losses(law, step.scene->outlet), q,
+                                               time_derivative(step, q, history[upper] + history[lower]));
+    write<3>(Value<derive, 3>(step.outlet_pressure - y[0] - drop), at.tip_pressure, places, residual, matrix);
   }
   const int last = at.nodes - 1, upper = at.upper_flow(at.nodes), lower = at.lower_flow(at.nodes);
   { // Rim, from the lower to the upper chamber.
     const std::array<int, 3> places = {lower, at.lower_pressure(last), at.upper_pressure(last)};
-    const auto y = read<3>(x, places);
-    const Dual<3> drop =
+    const auto y = read<derive, 3>(x, places);
+    const Value<derive, 3> drop =
         passage_drop(law, layout.rim, rim_losses(law), y[0], time_derivative(step, y[0], history[lower]));
-    write<3>(Dual<3>(y[1] - y[2] - drop), lower, places, residual, matrix);
+    write<3>(Value<derive, 3>(y[1] - y[2] - drop), lower, places, residual, matrix);
   }
   { // Inlet: the upper chamber gives to the gap what comes by the rim and by the inlet.
     const std::array<int, 3> places = {upper, lower, at.upper_pressure(last)};
-    const auto y = read<3>(x, places);
-    const Dual<3> q = -(y[0] + y[1]);
-    const Dual<3> drop = passage_drop(law, layout.inlet, channel_losses(law, step.scene->inlet), q,
-                                      time_derivative(step, q, -(history[upper] + history[lower])));
-    write<3>(Dual<3>(-y[2] - drop), upper, places, residual, matrix);
+    const auto y = read<derive, 3>(x, places);
+    const Value<derive, 3> q = -(y[0] + y[1]);
+    const Value<derive, 3> drop = passage_drop(law, layout.inlet, channel_losses(law, step.scene->inlet), q,
+                                               time_derivative(step, q, -(history[upper] + history[lower])));
+    write<3>(Value<derive, 3>(-y[2] - drop), upper, places, residual, matrix);
   }
 }
 
+template <bool derive>
 void assemble_contact(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                       BandMatrix* matrix) {
   const auto& at = step.at;
   const auto& layout = *step.layout;
   for (int node = 0; node < layout.channel; ++node) {
     const std::array<int, 1> places = {at.deflection_rate(node)};
-    const auto y = read<1>(x, places);
-    const Dual<1> w = deflection(step, node, y[0]);
+    const auto y = read<derive, 1>(x, places);
+    const Value<derive, 1> w = deflection(step, node, y[0]);
     const auto& settings = step.scene->thin_gap;
-    const Dual<1> net = contact_pressure(settings, Dual<1>(layout.upper_height[node] - w)) -
-                        contact_pressure(settings, Dual<1>(layout.lower_height[node] + w));
-    write<1>(Dual<1>(node_area(layout, node) * net), places[0], places, residual, matrix);
+    const Value<derive, 1> net = contact_pressure(settings, Value<derive, 1>(layout.upper_height[node] - w)) -
+                                 contact_pressure(settings, Value<derive, 1>(layout.lower_height[node] + w));
+    write<1>(Value<derive, 1>(node_area(layout, node) * net), places[0], places, residual, matrix);
   }
 }
 
@@ -261,6 +277,7 @@ PlateElement plate_element(const ThinGapLayout& layout, int inner) {
           0.5 * (layout.thickness[inner] + layout.thickness[inner + 1])};
 }
 
+template <bool derive>
 void assemble_plate(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                     BandMatrix* matrix) {
   const auto& at = step.at;
@@ -269,13 +286,13 @@ void assemble_plate(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::Ve
   const auto model = step.scene->solid_model;
   // Beyond the holder's first node the plate moves as a whole.
   for (int inner = 0; inner < layout.clamp; ++inner) {
-    using D = Dual<6>;
+    using D = Value<derive, 6>;
     std::array<int, 6> places;
     for (int k = 0; k < 3; ++k) {
       places[k] = at.deflection_rate(inner) + k;
       places[3 + k] = at.deflection_rate(inner + 1) + k;
     }
-    const auto y = read<6>(x, places);
+    const auto y = read<derive, 6>(x, places);
     const std::array<PlateNode<D>, 2> v = {{{y[0], y[1], y[2]}, {y[3], y[4], y[5]}}};
     const auto moved = [&](int node, const PlateNode<D>& rate) {
       const int first = at.deflection(node);
@@ -464,15 +481,28 @@ Eigen::VectorXd displacements(const ThinGapStep& step, const Eigen::VectorXd& x)
   return d;
 }
 
-void assemble(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
-              BandMatrix* matrix, double& holder_force) {
+namespace {
+
+template <bool derive>
+void assemble_all(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+                  BandMatrix* matrix) {
   residual.setZero(step.at.size());
   if (matrix) matrix->set_zero();
-  assemble_gap(step, Side::upper, x, residual, matrix);
-  assemble_gap(step, Side::lower, x, residual, matrix);
-  assemble_passages(step, x, residual, matrix);
-  assemble_plate(step, x, residual, matrix);
-  assemble_contact(step, x, residual, matrix);
+  assemble_gap<derive>(step, Side::upper, x, residual, matrix);
+  assemble_gap<derive>(step, Side::lower, x, residual, matrix);
+  assemble_passages<derive>(step, x, residual, matrix);
+  assemble_plate<derive>(step, x, residual, matrix);
+  assemble_contact<derive>(step, x, residual, matrix);
+}
+
+} // namespace
+
+void assemble(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+              BandMatrix* matrix, double& holder_force) {
+  if (matrix)
+    assemble_all<true>(step, x, residual, matrix);
+  else
+    assemble_all<false>(step, x, residual, nullptr);
   holder_force = impose_holder(step, x, residual, matrix);
 }
 

@@ -21,7 +21,8 @@ namespace {
 constexpr int max_iterations = 40;
 constexpr int full_iterations = 8; // of Newton, before its updates are shortened
 constexpr double shortening = 0.5;
-constexpr int max_parts = 64; // of a step
+constexpr double slow_convergence = 0.1; // ratio of changes at which the matrix is made anew
+constexpr int max_parts = 64;            // of a step
 
 /// Largest change of x by `update`, each kind of unknown measured by its own largest value (or that it would
 /// have in a flow driven by the holder at this frequency).
@@ -62,12 +63,14 @@ std::optional<Eigen::VectorXd> newton(const ThinGapStep& step, Eigen::VectorXd x
                                       PhaseTimer& timer, double& holder_force, std::string& reason) {
   const RelativeChange relative_change(step);
   Eigen::VectorXd residual, update;
+  bool fresh = true; // the matrix is that of x
+  double previous_change = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     {
       const auto scope = timer.measure("assemble");
-      assemble(step, x, residual, &matrix, holder_force);
+      assemble(step, x, residual, fresh ? &matrix : nullptr, holder_force);
     }
-    {
+    if (fresh) {
       const auto scope = timer.measure("factor");
       if (!matrix.factor()) {
         reason = "the equations are singular";
@@ -84,11 +87,15 @@ std::optional<Eigen::VectorXd> newton(const ThinGapStep& step, Eigen::VectorXd x
       return std::nullopt;
     }
     x -= (iteration < full_iterations ? 1.0 : shortening) * update;
-    if (relative_change(x, update) < step.scene->thin_gap.newton_tolerance) {
+    const double change = relative_change(x, update);
+    if (change < step.scene->thin_gap.newton_tolerance) {
       const auto scope = timer.measure("assemble");
       assemble(step, x, residual, nullptr, holder_force);
       return x;
     }
+    // An old matrix serves as long as it brings x closer at this rate.
+    fresh = iteration > 0 && change > slow_convergence * previous_change;
+    previous_change = change;
   }
   reason = "Newton's iteration does not converge in " + std::to_string(max_iterations) + " iterations";
   return std::nullopt;
