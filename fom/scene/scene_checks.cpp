@@ -20,6 +20,13 @@ void check_geometry(const Scene& scene, const std::string& where) {
                      "no \"geometry.fluid_mesh\"", "\"geometry.fluid_mesh\", a Gmsh file",
                      where + ", section [geometry]");
   }
+  if (has_meshes && (scene.clearance_scale != 1 || scene.rim_gap_scale != 1)) {
+    throw InputError("gaps cannot be scaled without a profile",
+                     "clearance_scale = " + shortest_number(scene.clearance_scale) +
+                         ", rim_gap_scale = " + shortest_number(scene.rim_gap_scale) + " with Gmsh meshes",
+                     "both 1, or \"geometry.profile\" in place of the meshes",
+                     where + ", section [geometry]");
+  }
 }
 
 void check_clamp(const Scene& scene, const std::string& where) {

@@ -16,7 +16,8 @@ namespace undula {
 /// start at its folder, those in an override at the working directory; the returned scene holds absolute
 /// paths. Throws InputError naming file and line for bad TOML, unknown keys (with the nearest valid one),
 /// wrong units, types and values, values planned but not available, missing keys and files, and
-/// contradictions between keys.
+/// contradictions between keys. A real number may stand as { value = ..., tolerance = ... }, which fills
+/// Scene::tolerances; an override by a bare number keeps the tolerance, one by such a table replaces it.
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The same for a scene held as text, for instance one recorded in an output file. `origin` names it in
@@ -30,8 +31,8 @@ Scene parse_scene(std::string_view text, const std::string& origin, const std::f
 std::string scene_to_toml(const Scene& scene);
 
 /// 16 hexadecimal digits that change when a key that shapes the computed state changes, or the content of the
-/// profile or of a mesh. Name, length of the run, output and training do not count, so that a run can be
-/// prolonged from a checkpoint.
+/// profile or of a mesh. Name, length of the run, output, training and tolerances do not count, so that a run
+/// can be prolonged from a checkpoint.
 std::string scene_hash(const Scene& scene);
 
 } // namespace undula

@@ -25,6 +25,23 @@ bool is_unit(std::string_view text) {
   return std::find(foreign_units.begin(), foreign_units.end(), text) != foreign_units.end();
 }
 
+/// The nearest of the keys that `counts` accepts.
+template <typename Counts>
+const SceneKey& nearest_among(std::string_view path, const Counts& counts) {
+  const SceneKey* nearest = nullptr;
+  int least = std::numeric_limits<int>::max();
+  for (const SceneKey& key : scene_table()) {
+    // One more than the leaves' distance, so that a key of the section at hand is preferred.
+    const int elsewhere = edit_distance(leaf_of(path), leaf_of(key.path)) + 1;
+    const int distance = std::min(edit_distance(path, key.path), elsewhere);
+    if (distance < least && counts(key)) {
+      least = distance;
+      nearest = &key;
+    }
+  }
+  return *nearest;
+}
+
 } // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {
@@ -67,18 +84,11 @@ const SceneKey* same_quantity(std::string_view path) {
 }
 
 const SceneKey& nearest_key(std::string_view path) {
-  const SceneKey* nearest = nullptr;
-  int least = std::numeric_limits<int>::max();
-  for (const SceneKey& key : scene_table()) {
-    // One more than the leaves' distance, so that a key of the section at hand is preferred.
-    const int elsewhere = edit_distance(leaf_of(path), leaf_of(key.path)) + 1;
-    const int distance = std::min(edit_distance(path, key.path), elsewhere);
-    if (distance < least) {
-      least = distance;
-      nearest = &key;
-    }
-  }
-  return *nearest;
+  return nearest_among(path, [](const SceneKey&) { return true; });
+}
+
+const SceneKey& nearest_real_key(std::string_view path) {
+  return nearest_among(path, [](const SceneKey& key) { return std::holds_alternative<RealKey>(key.value); });
 }
 
 bool is_section(std::string_view name) {

@@ -21,6 +21,9 @@ const SceneKey* same_quantity(std::string_view path);
 /// The key nearest to an unknown path, by edit distance of the whole path or of the leaf in another section.
 const SceneKey& nearest_key(std::string_view path);
 
+/// The same among the keys that hold a real number.
+const SceneKey& nearest_real_key(std::string_view path);
+
 /// Whether keys exist below this section name.
 bool is_section(std::string_view name);
 

@@ -11,6 +11,7 @@
 #include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_key_search.hpp"
+#include "fom/scene/scene_tolerance.hpp"
 
 namespace undula {
 namespace {
@@ -155,8 +156,66 @@ private:
     throw InputError("key " + in_quotes(key.path) + " " + why, seen, allowed_text(key), where);
   }
 
+  void assign_real(const SceneKey& key, const RealKey& real, const toml::node& node, double tolerance,
+                   const std::string& where) {
+    if (!node.is_number()) {
+      refuse_value(key, "has a value of the wrong type", seen_text(node), where);
+    }
+    const double value = *node.value<double>();
+    if (!real.allowed.contains(value)) { // refuses nan as well
+      refuse_value(key, "is out of range", seen_text(node), where);
+    }
+    if (!real.allowed.contains(value - tolerance) || !real.allowed.contains(value + tolerance)) {
+      refuse_value(key, "leaves its range within its tolerance",
+                   "from " + shortest_number(value - tolerance) + " to " +
+                       shortest_number(value + tolerance) + ", " + shortest_number(value) +
+                       " with a tolerance of " + shortest_number(tolerance),
+                   where);
+    }
+    real.field(scene) = value * real.cgs_per_unit;
+  }
+
+  /// { value = ..., tolerance = ... }; without a tolerance the value counts as exact.
+  void assign_with_tolerance(const SceneKey& key, const RealKey& real, const toml::table& table,
+                             const Origin& origin) {
+    const std::string form = "{ value = " + allowed_text(key) + ", tolerance = a number >= 0 }";
+    for (const auto& [name, node] : table) {
+      if (name.str() != "value" && name.str() != "tolerance") {
+        const bool value_is_near =
+            edit_distance(name.str(), "value") < edit_distance(name.str(), "tolerance");
+        throw InputError(
+            "unknown key " + in_quotes(name.str()) + " beside the value of " + in_quotes(key.path),
+            std::string(name.str()) + " = " + seen_text(node),
+            std::string("the nearest valid one is ") + (value_is_near ? "\"value\"" : "\"tolerance\"") +
+                ", " + form,
+            origin.at(name.source()));
+      }
+    }
+    const toml::node* value = table.get("value");
+    if (value == nullptr) {
+      throw InputError("key " + in_quotes(key.path) + " has no value", seen_text(table), form,
+                       origin.at(table.source()));
+    }
+    double tolerance = 0;
+    if (const toml::node* stated = table.get("tolerance")) {
+      tolerance = stated->is_number() ? *stated->value<double>() : -1;
+      if (!std::isfinite(tolerance) || tolerance < 0) {
+        throw InputError("the tolerance of key " + in_quotes(key.path) + " makes no sense",
+                         "tolerance = " + seen_text(*stated),
+                         "a finite number >= 0" + (key.unit.empty() ? "" : ", in " + key.unit),
+                         origin.at(stated->source()));
+      }
+    }
+    assign_real(key, real, *value, tolerance, origin.at(value->source()));
+    set_tolerance(scene, key.path, tolerance);
+  }
+
   void assign(const SceneKey& key, const toml::node& node, const Origin& origin) {
     const std::string where = origin.at(node.source());
+    if (node.is_table() && node.as_table()->contains("tolerance") &&
+        !std::holds_alternative<RealKey>(key.value)) {
+      refuse_value(key, "takes no tolerance: it is not a real number", seen_text(node), where);
+    }
     const auto wrong_type = [&] {
       refuse_value(key, "has a value of the wrong type", seen_text(node), where);
     };
@@ -164,14 +223,11 @@ private:
         [&](const auto& typed) {
           using Type = std::remove_cvref_t<decltype(typed)>;
           if constexpr (std::is_same_v<Type, RealKey>) {
-            if (!node.is_number()) {
-              wrong_type();
+            if (node.is_table()) {
+              assign_with_tolerance(key, typed, *node.as_table(), origin);
+            } else {
+              assign_real(key, typed, node, tolerance_of(scene, key.path), where);
             }
-            const double value = *node.value<double>();
-            if (!typed.allowed.contains(value)) { // refuses nan as well
-              refuse_value(key, "is out of range", seen_text(node), where);
-            }
-            typed.field(scene) = value * typed.cgs_per_unit;
           } else if constexpr (std::is_same_v<Type, IntegerKey>) {
             if (!node.is_integer()) {
               wrong_type();

@@ -47,6 +47,16 @@ std::string scene_reference() {
       "- Relative paths start at the scene file; in `--set` at the working directory.\n"
       "- `--set section.key=value` overrides a key; it may be repeated. Quotes around names may be left "
       "out.\n"
+      "- A number of a range (not an integer) may stand with its tolerance, in the file and in `--set`:\n"
+      "  `stroke_mm = { value = 0.53, tolerance = 0.01 }`. The tolerance, in the unit of the key, is half "
+      "the "
+      "width of the\n"
+      "  interval that holds the true value with 95 % probability; the interval must lie within the range of "
+      "the key.\n"
+      "  `--set` with a bare number keeps the tolerance of the file, with such a table replaces it. "
+      "Tolerances "
+      "shape no\n"
+      "  computed state; they are what error bands and calibration start from.\n"
       "- Every output records the resolved scene. Keys marked * may change when a run goes on from a "
       "checkpoint.\n";
   std::string section = "-";

@@ -84,8 +84,8 @@ std::string default_text(const SceneKey& key) {
 
 std::string shortest_number(double value) {
   std::string number = exact_number(value);
-  // TOML tells floats from integers by the point or the exponent.
-  if (number.find_first_of(".e") == std::string::npos) {
+  // TOML tells floats from integers by the point or the exponent; "inf" and "nan" are floats.
+  if (number.find_first_of(".en") == std::string::npos) {
     number += ".0";
   }
   return number;

@@ -1,6 +1,5 @@
 // scene_to_toml and scene_hash: the resolved scene as text and as a fingerprint.
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -9,36 +8,11 @@
 #include "base/error.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "fom/scene/scene_tolerance.hpp"
+#include "fom/scene/scene_value.hpp"
 
 namespace undula {
 namespace {
-
-/// The surface value that the parser turns into exactly `stored`, the shortest in decimals; where none
-/// exists, the nearest.
-std::string surface_number(double stored, double cgs_per_unit) {
-  const double guess = stored / cgs_per_unit;
-  char text[40];
-  for (int digits = 1; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, guess);
-    const double candidate = std::strtod(text, nullptr);
-    if (candidate * cgs_per_unit == stored) {
-      return shortest_number(candidate);
-    }
-  }
-  // The quotient may be off by a rounding or two.
-  double below = guess;
-  double above = guess;
-  for (int ulp = 0; ulp < 4; ++ulp) {
-    below = std::nextafter(below, -HUGE_VAL);
-    above = std::nextafter(above, HUGE_VAL);
-    for (const double candidate : {below, above}) {
-      if (candidate * cgs_per_unit == stored) {
-        return shortest_number(candidate);
-      }
-    }
-  }
-  return shortest_number(guess);
-}
 
 /// TOML basic string.
 std::string toml_string(const std::string& text) {
@@ -62,7 +36,7 @@ std::string toml_string(const std::string& text) {
 /// Value of a key in TOML notation; "" for a file or list that is left out.
 std::string value_text(const SceneKey& key, Scene& scene) {
   if (const auto* real = std::get_if<RealKey>(&key.value)) {
-    return surface_number(real->field(scene), real->cgs_per_unit);
+    return shortest_number(to_surface_unit(real->field(scene), real->cgs_per_unit));
   }
   if (const auto* integer = std::get_if<IntegerKey>(&key.value)) {
     return std::to_string(integer->field(scene));
@@ -129,7 +103,11 @@ std::string scene_to_toml(const Scene& scene) {
       section = key.section();
       text += "\n[" + section + "]\n";
     }
-    text += key.leaf() + " = " + value + "\n";
+    const double tolerance = tolerance_of(scene, key.path);
+    text += key.leaf() + " = " +
+            (tolerance == 0 ? value
+                            : "{ value = " + value + ", tolerance = " + shortest_number(tolerance) + " }") +
+            "\n";
   }
   return text;
 }

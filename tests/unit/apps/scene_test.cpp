@@ -88,6 +88,37 @@ TEST(Scene, EveryStrokeAndHeadOfAFineSweepReadsBackBitForBit) {
   }
 }
 
+TEST(Scene, EveryShippedSceneIsReadAndReadsBack) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(UNDULA_SOURCE_DIR "/data/scenes")) {
+    const Scene scene = read_scene(entry.path());
+    EXPECT_EQ(scene.name, entry.path().stem().string());
+    const Scene again = parse_scene(scene_to_toml(scene), "recorded", "/");
+    EXPECT_EQ(scene_to_toml(again), scene_to_toml(scene)) << entry.path();
+    EXPECT_EQ(scene_hash(again), scene_hash(scene)) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 3);
+}
+
+TEST(Scene, TheShippedThinGapStatesItsLevelsAndItsTolerances) {
+  const Scene scene = read_scene(UNDULA_SOURCE_DIR "/data/scenes/wave_pump_thin_gap.toml");
+  EXPECT_EQ(scene.space, Space::thin_gap);
+  EXPECT_EQ(scene.coupling, Coupling::implicit);
+  EXPECT_EQ(scene.solid_model, SolidModel::von_karman);
+  EXPECT_DOUBLE_EQ(scene.thin_gap.film_thickness, 0.005);
+  EXPECT_EQ(scene.clearance_scale, 1);
+  const std::vector<std::pair<std::string, double>> expected = {
+      {"geometry.clearance_scale", 0.1},      {"geometry.rim_gap_scale", 0.2},
+      {"membrane.young_dyn_per_cm2", 8.43e5}, {"membrane.damping_time_s", 1e-4},
+      {"operating_point.stroke_scale", 0.02}, {"thin_gap.film_thickness_mm", 0.025}};
+  ASSERT_EQ(scene.tolerances.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(scene.tolerances[i].key, expected[i].first);
+    EXPECT_EQ(scene.tolerances[i].tolerance, expected[i].second);
+  }
+}
+
 TEST(Scene, TheHashFollowsWhatShapesTheStateAndNothingElse) {
   const std::string hash = scene_hash(with({}));
   EXPECT_EQ(hash.size(), 16u);

@@ -1,0 +1,40 @@
+#include "fom/scene/scene_tolerance.hpp"
+
+#include <algorithm>
+
+#include "fom/scene/scene_table.hpp"
+
+namespace undula {
+namespace {
+
+std::size_t place_in_table(std::string_view path) {
+  const auto table = scene_table();
+  return static_cast<std::size_t>(
+      std::find_if(table.begin(), table.end(), [&](const SceneKey& key) { return key.path == path; }) -
+      table.begin());
+}
+
+} // namespace
+
+double tolerance_of(const Scene& scene, std::string_view key) {
+  for (const Tolerance& stated : scene.tolerances) {
+    if (stated.key == key) {
+      return stated.tolerance;
+    }
+  }
+  return 0;
+}
+
+void set_tolerance(Scene& scene, const std::string& key, double tolerance) {
+  auto& all = scene.tolerances;
+  std::erase_if(all, [&](const Tolerance& stated) { return stated.key == key; });
+  if (tolerance == 0) {
+    return;
+  }
+  const std::size_t place = place_in_table(key);
+  const auto next = std::find_if(all.begin(), all.end(),
+                                 [&](const Tolerance& stated) { return place_in_table(stated.key) > place; });
+  all.insert(next, Tolerance{key, tolerance});
+}
+
+} // namespace undula
