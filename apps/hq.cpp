@@ -3,10 +3,13 @@
 //   undula hq model.h5 --frequency 120 --stroke 0.53 --head 50,55,60 --json
 //   undula hq model.h5 --frequency 120 --stroke 0.53 --data data/measured/corwave_120hz_0.53mm.csv --plot
 //   hq.png
+//   undula hq data/scenes/wave_pump_thin_gap.toml --data data/measured/corwave_120hz_0.53mm.csv --plot hq.png
 //   undula hq data/scenes/wave_pump_fixed.toml --head 0,20,40,60 --set mesh.gap_elements=3
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -22,10 +25,13 @@
 #include "apps/text_table.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
-#include "training/periodic_run.hpp"
+#include "fom/root_rank.hpp"
+#include "training/curve.hpp"
 
 namespace undula {
 namespace {
+
+constexpr int default_points = 12;
 
 struct HqCommandOptions {
   std::string model;
@@ -53,7 +59,6 @@ void hq_of_model(const HqCommandOptions& options) {
     check_picture_name(options.picture);
   }
   rom::Model model = rom::load_model(options.model);
-  constexpr int default_points = 12;
   const std::vector<double> heads =
       options.heads.empty() ? even_heads(model.box.head_low_mmHg, model.box.head_high_mmHg, default_points)
                             : parse_heads(options.heads);
@@ -102,43 +107,67 @@ void hq_of_model(const HqCommandOptions& options) {
 }
 
 void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
-  // 1. The scene and the heads.
-  if (options.heads.empty()) {
-    throw CLI::RequiredError("--head");
-  }
-  if (!options.data.empty() || !options.picture.empty()) {
-    throw InputError("comparing full-order runs with data is the task of another command", options.model,
-                     "undula validate SCENE --data FILE --plot PICTURE", "the command line");
+  // 1. Everything that may be wrong with the input comes before the first result.
+  const auto begin = std::chrono::steady_clock::now();
+  if (!options.picture.empty()) {
+    check_picture_name(options.picture);
   }
   const Scene scene =
       read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
-  const std::vector<double> heads = parse_heads(options.heads);
+  const std::vector<double> heads =
+      options.heads.empty() ? even_heads(units::pressure_to_mmHg(scene.training.head_low),
+                                         units::pressure_to_mmHg(scene.training.head_high), default_points)
+                            : parse_heads(options.heads);
+  std::optional<MeasuredCurve> measured;
+  if (!options.data.empty()) {
+    measured = read_measured_curve(options.data);
+  }
+  std::optional<SceneCurve> other_runs;
+  if (!options.runs.empty()) {
+    other_runs = read_scene_curve(options.runs);
+  }
 
-  // 2. One full-order run to its periodic state per head; meshes and operators are shared.
+  // 2. The periodic state at every head, on a level prepared once.
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, comm, timer);
-  std::optional<Progress> progress;
-  if (rank == 0) {
-    progress.emplace("hq", static_cast<long>(heads.size()));
-  }
-  std::vector<ScenePoint> points;
-  for (const double head : heads) {
-    Scene at_head = scene;
-    at_head.operating_point.head = units::pressure_from_mmHg(head);
-    points.push_back(scene_point(periodic_run(*prepared, at_head)));
-    if (progress) {
-      progress->update(static_cast<long>(points.size()));
+  PreparedLevel level = prepare_level(scene, comm, timer);
+  std::vector<CurvePoint> points;
+  {
+    std::optional<Progress> progress;
+    if (rank == 0) {
+      progress.emplace("hq", static_cast<long>(heads.size()));
     }
+    long done = 0;
+    points = head_flow_curve(level, scene, heads, [&] {
+      ++done;
+      if (progress) {
+        progress->update(done);
+      }
+    });
   }
-  progress.reset();
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
 
-  // 3. Numbers to stdout.
-  if (rank == 0) {
-    std::cout << (options.json ? scene_curve_json(scene, prepared->disc.unknowns(), points, timer)
-                               : scene_curve_table(points));
-  }
+  // 3. Numbers to stdout, picture beside them.
+  on_root(comm, [&] {
+    for (const CurvePoint& point : points) {
+      if (!point.periodic) {
+        spdlog::warn("no periodic state at {} mmHg: {}", shortest(point.head_mmHg), point.reason);
+      }
+    }
+    if (std::ranges::none_of(points, [](const auto& point) { return std::isfinite(point.flow_l_per_min); })) {
+      throw NumericsError("the curve has no point", "every head", "what the warnings above say");
+    }
+    if (!options.json) { // JSON holds the time itself
+      spdlog::info("{} points in {} s", points.size(), decimals(elapsed.count(), 1));
+    }
+    const SceneReport report = {scene, unknowns(level), points,
+                                timer, elapsed.count(), measured ? &*measured : nullptr};
+    std::cout << (options.json ? scene_curve_json(report) : scene_curve_table(report));
+    if (!options.picture.empty()) {
+      plot_scene_curve(options.picture, report, other_runs);
+    }
+  });
 }
 
 void hq(const HqCommandOptions& options) {
@@ -154,7 +183,7 @@ void hq(const HqCommandOptions& options) {
 void add_hq_command(CLI::App& app) {
   auto options = std::make_shared<HqCommandOptions>();
   CLI::App* command = app.add_subcommand(
-      "hq", "Head-flow curve of a reduced model (table, JSON, plot) or of full-order runs");
+      "hq", "Head-flow curve of a reduced model or of full-order runs (table, JSON, plot)");
   command->add_option("model", options->model, "model file (HDF5) made by undula train, or a scene (.toml)")
       ->required();
   command->add_option("--frequency", options->frequency_Hz,
@@ -165,7 +194,7 @@ void add_hq_command(CLI::App& app) {
       "heads in mmHg, low:high:step or a list with commas; default: 12 over the training box");
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)");
   command->add_option("--runs", options->runs,
-                      "full-order runs to draw beside a model (what `hq SCENE --json` prints)");
+                      "full-order runs to draw beside the curve (what `hq SCENE --json` prints)");
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");
   command

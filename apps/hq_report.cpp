@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "apps/plots.hpp"
 #include "apps/text_table.hpp"
 
 namespace undula {
-namespace {
 
-/// The fit within the measured range of heads, nothing outside.
 std::optional<double> measured_flow(const MeasuredCurve& curve, double head_mmHg) {
   if (head_mmHg < curve.head_mmHg.front() || head_mmHg > curve.head_mmHg.back()) {
     return std::nullopt;
@@ -20,14 +17,11 @@ std::optional<double> measured_flow(const MeasuredCurve& curve, double head_mmHg
   return curve.fit(head_mmHg);
 }
 
-/// JSON knows neither infinity nor NaN.
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 bool same_setting(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)); }
-
-} // namespace
 
 std::string hq_table(const HqReport& report) {
   std::vector<std::string> header = {"head (mmHg)", "flow (l/min)", "error (l/min)", "in training box"};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,6 +12,15 @@
 #include "model.hpp"
 
 namespace undula {
+
+/// The fit within the measured range of heads (l/min), nothing outside.
+std::optional<double> measured_flow(const MeasuredCurve& curve, double head_mmHg);
+
+/// JSON knows neither infinity nor NaN: null in their place.
+nlohmann::ordered_json finite_or_null(double value);
+
+/// Whether two frequencies or strokes are the same but for rounding.
+bool same_setting(double a, double b);
 
 /// What was asked and what was answered.
 struct HqReport {

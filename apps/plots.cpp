@@ -58,16 +58,18 @@ bool plot_hq_curve(const std::filesystem::path& picture, const std::string& titl
   DataBlocks blocks;
   std::vector<std::string> items;
 
-  // 1. The band as a closed polygon: up along flow - error, down along flow + error.
-  const int band = blocks.begin("band: flow (l/min), head (mmHg)");
+  // 1. The band, if there is one, as a closed polygon: up along flow - error, down along flow + error.
   const std::size_t n = line.head_mmHg.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    blocks.add(row(line.flow_l_per_min[i] - line.error_l_per_min[i], line.head_mmHg[i]));
+  if (!line.error_l_per_min.empty()) {
+    const int band = blocks.begin("band: flow (l/min), head (mmHg)");
+    for (std::size_t i = 0; i < n; ++i) {
+      blocks.add(row(line.flow_l_per_min[i] - line.error_l_per_min[i], line.head_mmHg[i]));
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      blocks.add(row(line.flow_l_per_min[i] + line.error_l_per_min[i], line.head_mmHg[i]));
+    }
+    items.push_back(plot_item(band, "with filledcurves closed fc rgb '#b0c4de'", line.band_label));
   }
-  for (std::size_t i = n; i-- > 0;) {
-    blocks.add(row(line.flow_l_per_min[i] + line.error_l_per_min[i], line.head_mmHg[i]));
-  }
-  items.push_back(plot_item(band, "with filledcurves closed fc rgb '#b0c4de'", line.band_label));
 
   // 2. The line.
   const int curve = blocks.begin("curve: flow (l/min), head (mmHg)");

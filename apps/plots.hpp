@@ -10,12 +10,13 @@
 
 namespace undula {
 
-/// A curve with a band of +- error; three arrays of the same length, in the order of the curve.
+/// A curve, with a band of +- error where `error_l_per_min` is not empty; arrays of the same length, in the
+/// order of the curve.
 struct HqLine {
   std::string label;
   std::span<const double> head_mmHg;
   std::span<const double> flow_l_per_min;
-  std::span<const double> error_l_per_min; ///< half width of the band
+  std::span<const double> error_l_per_min; ///< half width of the band; empty: no band
   std::string band_label;
 };
 

@@ -1,43 +1,52 @@
-// A head-flow curve of full-order runs as table and JSON.
+// A head-flow curve of a full-order scene as table, JSON and picture.
 #pragma once
 
 #include <filesystem>
-#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "apps/measured_curve.hpp"
 #include "base/phase_timer.hpp"
 #include "fom/scene/scene.hpp"
-#include "training/campaign_store.hpp"
+#include "training/curve.hpp"
 
 namespace undula {
 
-/// One full-order run in its last period, surface units.
-struct ScenePoint {
-  double head_mmHg = 0;
-  double flow_l_per_min = 0, inflow_l_per_min = 0;
-  double spread_l_per_min = 0; ///< of the means of the last three periods
-  double power_mW = 0;         ///< hydraulic
-  double speed_max_cm_per_s = 0, clearance_min_mm = 0;
-  int periods = 0;
-  bool periodic = false;
-  std::string reason; ///< why it is not
-  std::map<std::string, double> seconds;
-};
-
-ScenePoint scene_point(const RunRecord& record);
-std::string scene_curve_table(std::span<const ScenePoint> points);
-/// What scene_curve_json writes, read back.
+/// What `undula hq SCENE --json` prints, read back.
 struct SceneCurve {
   double frequency_Hz = 0, stroke_mm = 0;
+  int unknowns = 0;
+  double seconds_per_point = 0;                  ///< wall time, preparation shared among the points
   std::vector<double> head_mmHg, flow_l_per_min; ///< same length
 };
 
-/// Reads a file printed by `undula hq SCENE --json`. Throws InputError for a missing file or another content.
+/// Reads a file printed by `undula hq SCENE --json`, without the heads where the numerics failed. Throws
+/// InputError for a missing file or another content.
 SceneCurve read_scene_curve(const std::filesystem::path& file);
 
-std::string scene_curve_json(const Scene& scene, int unknowns, std::span<const ScenePoint> points,
-                             const PhaseTimer& preparation);
+/// What was asked of a scene and what was answered.
+struct SceneReport {
+  const Scene& scene;
+  int unknowns = 0;
+  std::span<const CurvePoint> points;
+  const PhaseTimer& preparation;
+  double seconds = 0;                      ///< wall time of preparation and curve
+  const MeasuredCurve* measured = nullptr; ///< nullptr: no data given
+};
+
+/// Columns head, flows, spread, speed, clearance, periods; with data also the measured fit at that head.
+/// Numbers are "failed" where the numerics failed.
+std::string scene_curve_table(const SceneReport& report);
+
+/// JSON: `points[]` as of a reduced model (hq_json) without inside_training_box, error_l_per_min null, and
+/// what CurvePoint holds besides; null where the numerics failed.
+std::string scene_curve_json(const SceneReport& report);
+
+/// The curve as a line with its points, other runs at this frequency and stroke, measured samples. Returns
+/// false, after a warning, where gnuplot is missing.
+bool plot_scene_curve(const std::filesystem::path& picture, const SceneReport& report,
+                      const std::optional<SceneCurve>& other_runs);
 
 } // namespace undula

@@ -17,16 +17,15 @@ Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
   return read_scene(file, overrides);
 }
 
-FlowAtHead flow_of_scene(PreparedScene& prepared, const Scene& scene, const std::function<void()>& on_step) {
-  return [&prepared, scene, &on_step](double head_mmHg) {
+FlowAtHead flow_of_scene(PreparedLevel& level, const Scene& scene, const std::function<void()>& on_step) {
+  return [&level, scene, &on_step](double head_mmHg) {
     Scene point = scene;
     point.operating_point.head = units::pressure_from_mmHg(head_mmHg);
-    set_operating_point(prepared, point);
     const int first_averaged = (point.time.periods - 1) * point.time.steps_per_period + 1;
     double sum = 0;
-    State state = initial_state(prepared.disc);
+    State state = initial_state(level);
     PhaseTimer timer;
-    march(prepared, point, state, timer, [&](const State& now, const Observation& seen) {
+    march(level, point, state, timer, [&](const State& now, const Observation& seen) {
       if (now.step >= first_averaged) {
         sum += seen.outflow;
       }

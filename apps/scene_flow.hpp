@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/validation.hpp"
-#include "fom/simulation.hpp"
+#include "fom/level.hpp"
 
 namespace undula {
 
@@ -17,9 +17,9 @@ namespace undula {
 Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
                     const std::optional<double>& frequency_Hz, const std::optional<double>& stroke_mm);
 
-/// Runs the scene from rest at each head, on meshes and operators prepared once, and takes the mean outflow
-/// of its last period. `prepared` and `on_step` (called after every step) must outlive the function. Calls
-/// are collective and throw NumericsError on every rank.
-FlowAtHead flow_of_scene(PreparedScene& prepared, const Scene& scene, const std::function<void()>& on_step);
+/// Runs the scene from rest at each head, on a level prepared once, and takes the mean outflow of its last
+/// period. `level` and `on_step` (called after every step) must outlive the function. Calls are collective
+/// and throw NumericsError on every rank.
+FlowAtHead flow_of_scene(PreparedLevel& level, const Scene& scene, const std::function<void()>& on_step);
 
 } // namespace undula

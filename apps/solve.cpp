@@ -1,6 +1,7 @@
 // undula solve scene.toml: one full-order run.
 //   undula solve data/scenes/wave_pump_fixed.toml --output run --plot
 //   undula solve data/scenes/wave_pump_fixed.toml --output run --restart --set time.periods=20
+//   undula solve data/scenes/wave_pump_thin_gap.toml --output run --plot
 //   mpirun -np 2 undula solve data/scenes/wave_pump_fixed.toml --output run --json -- -log_view
 #include <spdlog/spdlog.h>
 
@@ -14,6 +15,7 @@
 #include "apps/solve_plots.hpp"
 #include "apps/text_table.hpp"
 #include "base/error.hpp"
+#include "fom/level.hpp"
 #include "fom/root_rank.hpp"
 #include "fom/run_directory.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -93,16 +95,16 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
                                                : ExistingRun::refuse;
   on_root(comm, [&] { check_run_directory(folder, scene, existing); });
 
-  // 2. Prepare: meshes, cut, operators.
+  // 2. Prepare what the scene's level needs: meshes, cut, operators, or coefficients.
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, comm, timer);
+  PreparedLevel level = prepare_level(scene, comm, timer);
 
   // 3. The output, and the state to go on from.
-  State state = initial_state(prepared->disc);
+  State state = initial_state(level);
   std::optional<RunDirectory> output; // on rank 0
   on_root(comm, [&] {
     const auto scope = timer.measure("output");
-    output.emplace(folder, *prepared, scene, existing, ranks, state);
+    output.emplace(folder, view_level(level), scene, existing, ranks, state);
     if (options.restart) {
       spdlog::info("{} goes on from step {}", folder, state.step);
     }
@@ -117,7 +119,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
     if (rank == 0) {
       progress.emplace("solve", std::max(steps, 0));
     }
-    march(*prepared, scene, state, timer, [&](const State& now, const Observation& seen) {
+    march(level, scene, state, timer, [&](const State& now, const Observation& seen) {
       const auto scope = timer.measure("output");
       on_root(comm, [&] {
         output->record(now, seen);
@@ -136,17 +138,18 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   on_root(comm, [&] {
     output->finish(state, timer);
     const SolvedRun run = {scene.name, scene_hash(scene),
-                           folder,     prepared->disc.unknowns(),
+                           folder,     unknowns(level),
                            ranks,      first_step,
                            state.step, summarise_periods(output->series(), scene.time.steps_per_period)};
-    if (!run.periods.empty() && run.periods.back().clearance_min_mm < 0) {
+    if (scene.coupling == Coupling::fixed && !run.periods.empty() &&
+        run.periods.back().clearance_min_mm < 0) {
       spdlog::warn(
           "the membrane passes through a wall, which fixed coupling does not feel; "
           "the geometry is that of rest");
     }
     std::cout << (options.json ? json_text(run, timer) : table_text(run));
     if (options.plot) {
-      plot_run(*output, *prepared, scene, state);
+      plot_run(*output, scene, state);
     }
   });
 }

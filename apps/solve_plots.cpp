@@ -1,7 +1,8 @@
 #include "apps/solve_plots.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <cmath>
 
 #include "apps/plots.hpp"
 #include "apps/text_table.hpp"
@@ -14,26 +15,15 @@ constexpr int phases_drawn = 8;
 
 using Outline = std::vector<Eigen::Vector2d>;
 
-/// Skin of the displaced solids, edge by edge.
-std::vector<Outline> solid_outlines(const Discretisation<2>& disc, const Eigen::VectorXd& d) {
+/// Edges of the displaced solids.
+std::vector<Outline> solid_outlines(const FieldMesh<2>& solids, const NodalField& displacement) {
+  const auto place = [&](int point) -> Eigen::Vector2d {
+    const double* moved = &displacement.values[2 * static_cast<std::size_t>(point)];
+    return solids.points[static_cast<std::size_t>(point)] + Eigen::Vector2d(moved[0], moved[1]);
+  };
   std::vector<Outline> outlines;
-  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
-    const auto& mesh = disc.problem.solids[s].mesh;
-    for (const auto& facet : mesh.boundary) {
-      Outline edge;
-      for (const int node : facet.points) {
-        edge.push_back(mesh.points[node] + d.segment<2>(disc.solid_unknown(static_cast<int>(s), node, 0)));
-      }
-      outlines.push_back(edge);
-    }
-  }
-  return outlines;
-}
-
-std::vector<Outline> wall_outlines(const SimplexMesh<2>& background) {
-  std::vector<Outline> outlines;
-  for (const auto& facet : background.boundary) {
-    outlines.push_back({background.points[facet.points[0]], background.points[facet.points[1]]});
+  for (const auto& edge : boundary_edges(solids)) {
+    outlines.push_back({place(edge[0]), place(edge[1])});
   }
   return outlines;
 }
@@ -46,17 +36,23 @@ struct Window {
   }
 };
 
-Window membrane_window(const SimplexMesh<2>& membrane) {
-  Window window{Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), {}};
-  window.high = -window.low;
-  for (const auto& x : membrane.points) {
-    window.low = window.low.cwiseMin(x);
-    window.high = window.high.cwiseMax(x);
+Window membrane_window(const std::array<Point<2>, 2>& box) {
+  const double margin = 0.1 * (box[1][0] - box[0][0]);
+  return {box[0].array() - margin, box[1].array() + margin};
+}
+
+/// Length of the vectors of a field, point by point.
+std::vector<double> magnitudes(const NodalField& field) {
+  const auto components = static_cast<std::size_t>(field.components);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < field.values.size(); i += components) {
+    double square = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+      square += field.values[i + c] * field.values[i + c];
+    }
+    result.push_back(std::sqrt(square));
   }
-  const double margin = 0.1 * (window.high[0] - window.low[0]);
-  window.low.array() -= margin;
-  window.high.array() += margin;
-  return window;
+  return result;
 }
 
 FieldOnTriangles field_on(const FieldMesh<2>& mesh, std::span<const std::array<int, 3>> cells,
@@ -64,35 +60,37 @@ FieldOnTriangles field_on(const FieldMesh<2>& mesh, std::span<const std::array<i
   return {mesh.points, cells, values, label};
 }
 
-void plot_state(const std::filesystem::path& folder, const Discretisation<2>& disc, const State& state,
+void plot_state(const std::filesystem::path& folder, const LevelView& view, const State& state,
                 const std::string& title) {
-  const FluidPicture<2> picture = fluid_picture(disc);
-  const auto fields = fluid_fields(disc, picture, state);
-  std::vector<double> speed, pressure_mmHg;
-  for (std::size_t p = 0; p < picture.mesh.points.size(); ++p) {
-    speed.push_back(std::hypot(fields[0].values[2 * p], fields[0].values[2 * p + 1]));
-    pressure_mmHg.push_back(units::pressure_to_mmHg(fields[1].values[p]));
+  const FieldMesh<2>& mesh = view.fluid;
+  const auto fields = view.fluid_fields(state);
+  const std::vector<double> speed = magnitudes(field_named(fields, "velocity"));
+  std::vector<double> pressure_mmHg;
+  for (const double pressure : field_named(fields, "pressure").values) {
+    pressure_mmHg.push_back(units::pressure_to_mmHg(pressure));
   }
-  std::vector<Outline> outlines = solid_outlines(disc, state.d[0]);
-  const auto walls = wall_outlines(disc.problem.background);
-  outlines.insert(outlines.end(), walls.begin(), walls.end());
-  const auto& cells = picture.mesh.cells;
-  plot_field(folder / "speed.png", title, field_on(picture.mesh, cells, speed, "speed (cm/s)"), outlines);
-  plot_field(folder / "pressure.png", title, field_on(picture.mesh, cells, pressure_mmHg, "pressure (mmHg)"),
+  std::vector<Outline> outlines =
+      solid_outlines(view.solids, field_named(view.solid_fields(state), "displacement"));
+  for (const auto& edge : view.outlines) {
+    outlines.push_back({edge[0], edge[1]});
+  }
+  const auto& cells = mesh.cells;
+  plot_field(folder / "speed.png", title, field_on(mesh, cells, speed, "speed (cm/s)"), outlines);
+  plot_field(folder / "pressure.png", title, field_on(mesh, cells, pressure_mmHg, "pressure (mmHg)"),
              outlines);
 
-  const Window window = membrane_window(disc.problem.solids[0].mesh);
+  const Window window = membrane_window(view.membrane_box);
   std::vector<std::array<int, 3>> near;
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(near), [&](const auto& cell) {
     return std::all_of(cell.begin(), cell.end(),
-                       [&](int point) { return window.contains(picture.mesh.points[point]); });
+                       [&](int point) { return window.contains(mesh.points[point]); });
   });
   std::erase_if(outlines, [&](const Outline& edge) {
     return !std::all_of(edge.begin(), edge.end(), [&](const auto& x) { return window.contains(x); });
   });
   if (!near.empty()) {
     plot_field(folder / "speed_gap.png", title + ", at the membrane",
-               field_on(picture.mesh, near, speed, "speed (cm/s)"), outlines);
+               field_on(mesh, near, speed, "speed (cm/s)"), outlines);
   }
 }
 
@@ -135,16 +133,14 @@ void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, co
 
 } // namespace
 
-void plot_run(const RunDirectory& run, const PreparedScene& prepared, const Scene& scene,
-              const State& state) {
+void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
   const auto& point = scene.operating_point;
   const std::string title = scene.name + ": " + shortest(point.frequency) + " Hz, stroke " +
                             shortest(units::length_to_mm(point.stroke)) + " mm, head " +
                             shortest(units::pressure_to_mmHg(point.head)) + " mmHg";
-  plot_state(run.folder(), prepared.disc, state,
+  plot_state(run.folder(), run.view(), state,
              title + ", t/T = " + shortest(static_cast<double>(state.step) / scene.time.steps_per_period));
-  plot_membrane(run.folder(), run.membrane(), prepared.observation.probes.radius, scene.time.steps_per_period,
-                title);
+  plot_membrane(run.folder(), run.membrane(), run.view().probes.radius, scene.time.steps_per_period, title);
   plot_flow(run.folder(), run.series(), title);
 }
 

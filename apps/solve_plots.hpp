@@ -10,6 +10,6 @@ namespace undula {
 /// Draws into the folder of the run: speed.png and pressure.png (the state, with the displaced solids),
 /// speed_gap.png (the same near the membrane), membrane.png (at eight phases of the last complete period) and
 /// flow.png (over time). Without gnuplot there is a warning and the scripts are kept.
-void plot_run(const RunDirectory& run, const PreparedScene& prepared, const Scene& scene, const State& state);
+void plot_run(const RunDirectory& run, const Scene& scene, const State& state);
 
 } // namespace undula

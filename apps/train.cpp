@@ -12,6 +12,7 @@
 #include "apps/mpi_session.hpp"
 #include "apps/progress.hpp"
 #include "apps/text_table.hpp"
+#include "base/error.hpp"
 #include "base/units.hpp"
 #include "fom/provenance.hpp"
 #include "fom/root_rank.hpp"
@@ -109,6 +110,11 @@ void train(const TrainOptions& options, MPI_Comm comm) {
 
   // 1. The scene, the plan, and the folder of the runs.
   const Scene scene = read_scene(options.scene, options.overrides);
+  if (scene.space == Space::thin_gap) {
+    throw InputError("a thin-gap scene needs no reduced model", "model.space = \"thin-gap\"",
+                     "undula hq on the scene itself, which takes seconds; or a scene of finite elements",
+                     scene.file.string() + ", section [model]");
+  }
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
   const SamplingPlan plan = plan_samples(scene.training);

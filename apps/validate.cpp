@@ -170,9 +170,9 @@ void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
   const Scene scene =
       read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
 
-  // 2. Meshes and operators, shared by all heads.
+  // 2. Meshes and operators, or coefficients, shared by all heads.
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, comm, timer);
+  PreparedLevel level = prepare_level(scene, comm, timer);
 
   // 3. Run it at those heads; every flow is a mean over the last period.
   int rank = 0;
@@ -191,7 +191,7 @@ void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
         progress->update(done);
       }
     };
-    validation = validate(comparison.curve, comparison.heads, flow_of_scene(*prepared, scene, on_step));
+    validation = validate(comparison.curve, comparison.heads, flow_of_scene(level, scene, on_step));
   }
 
   // 4. Compare.

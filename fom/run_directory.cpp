@@ -82,10 +82,10 @@ void check_run_directory(const std::filesystem::path& folder, const Scene& scene
                      folder.string());
 }
 
-RunDirectory::RunDirectory(std::filesystem::path folder, const PreparedScene& prepared, const Scene& scene,
+RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const Scene& scene,
                            ExistingRun existing, int ranks, State& state)
     : folder_(std::move(folder)),
-      prepared_(prepared),
+      view_(std::move(view)),
       scene_(scene),
       stamp_(stamp_scene(scene)),
       provenance_(provenance(ranks)) {
@@ -100,7 +100,7 @@ RunDirectory::RunDirectory(std::filesystem::path folder, const PreparedScene& pr
   if (existing == ExistingRun::go_on) {
     if (const auto file = newest_checkpoint(checkpoint_folder(folder_))) {
       const auto checkpoint = load_checkpoint(*file, stamp_);
-      state = state_of(checkpoint, prepared_.disc.unknowns(), *file);
+      state = state_of(checkpoint, state, *file);
       saved_step_ = state.step;
     }
   } else {
@@ -115,27 +115,26 @@ RunDirectory::RunDirectory(std::filesystem::path folder, const PreparedScene& pr
                            : TimeSeriesFile::go_on(folder_ / name, std::move(columns), state.step);
   };
   series_.emplace(table("time_series.csv", observation_columns()));
-  membrane_.emplace(table("membrane.csv", probe_columns(prepared_.observation.probes)));
+  membrane_.emplace(table("membrane.csv", probe_columns(view_.probes)));
   if (scene_.output.fields_every == 0) return;
-  fluid_picture_ = fluid_picture(prepared_.disc);
   auto origin = provenance_;
   origin["scene"] = stamp_.text;
   const auto writer = [&](const char* name, const FieldMesh<2>& mesh) {
     return state.step == 0 ? FieldWriter<2>::start(folder_, name, mesh, origin)
                            : FieldWriter<2>::go_on(folder_, name, mesh, origin, state.step);
   };
-  fluid_writer_.emplace(writer("fluid", fluid_picture_.mesh));
-  solid_writer_.emplace(writer("solids", solid_picture(prepared_.disc)));
+  fluid_writer_.emplace(writer("fluid", view_.fluid));
+  solid_writer_.emplace(writer("solids", view_.solids));
 }
 
 void RunDirectory::record(const State& state, const Observation& seen) {
   series_->append(state.step, observation_row(seen));
-  const Eigen::VectorXd axial_mm = prepared_.observation.probes.axial * state.d[0] / units::cm_per_mm;
+  const Eigen::VectorXd axial_mm = view_.probes.axial * state.d[0] / units::cm_per_mm;
   membrane_->append(state.step, {axial_mm.data(), static_cast<std::size_t>(axial_mm.size())});
   const auto due = [&](int every) { return every > 0 && state.step % every == 0; };
   if (due(scene_.output.fields_every)) {
-    fluid_writer_->write(state.step, state.time, fluid_fields(prepared_.disc, fluid_picture_, state));
-    solid_writer_->write(state.step, state.time, solid_fields(prepared_.disc, state));
+    fluid_writer_->write(state.step, state.time, view_.fluid_fields(state));
+    solid_writer_->write(state.step, state.time, view_.solid_fields(state));
   }
   if (due(scene_.output.checkpoint_every)) save_state(state);
   if (due(scene_.time.steps_per_period)) write_summaries();
@@ -152,7 +151,7 @@ std::filesystem::path RunDirectory::save_state(const State& state) {
 void RunDirectory::write_summaries() const {
   write_cycle_means(summarise_cycles(series(), scene_.time.steps_per_period), folder_ / "cycle_means.csv");
   const auto envelope = summarise_cycles(membrane(), scene_.time.steps_per_period);
-  const auto& radius = prepared_.observation.probes.radius;
+  const auto& radius = view_.probes.radius;
   const std::size_t last = (envelope.periods.size() - 1) * radius.size();
   std::string text = "radius_mm,low_mm,high_mm\n";
   for (std::size_t k = 0; k < radius.size(); ++k)

@@ -13,10 +13,11 @@
 #include <filesystem>
 #include <optional>
 
+#include "base/phase_timer.hpp"
 #include "fom/io/checkpoint.hpp"
-#include "fom/simulation.hpp"
+#include "fom/level_view.hpp"
+#include "fom/scene/scene.hpp"
 #include "fom/step_table.hpp"
-#include "fom/visual_mesh.hpp"
 
 namespace undula {
 
@@ -36,10 +37,11 @@ void check_run_directory(const std::filesystem::path& folder, const Scene& scene
 /// is full.
 class RunDirectory {
 public:
-  /// Makes the folder ready. With go_on, `state` becomes that of the newest checkpoint, if there is one, and
-  /// what was written after it is dropped; otherwise `state` is left as it is (at rest).
-  RunDirectory(std::filesystem::path folder, const PreparedScene& prepared, const Scene& scene,
-               ExistingRun existing, int ranks, State& state);
+  /// Makes the folder ready. `state` comes at rest, in the sizes of the level. With go_on it becomes that of
+  /// the newest checkpoint, if there is one, and what was written after it is dropped; otherwise it is left
+  /// as it is. `scene` has to outlive the object.
+  RunDirectory(std::filesystem::path folder, LevelView view, const Scene& scene, ExistingRun existing,
+               int ranks, State& state);
 
   /// Adds a step: rows, fields and checkpoint as far as they are due, summaries at the end of a period.
   void record(const State& state, const Observation& seen);
@@ -51,6 +53,7 @@ public:
   void finish(const State& state, const PhaseTimer& timer);
 
   const std::filesystem::path& folder() const { return folder_; }
+  const LevelView& view() const { return view_; }
   const TimeSeries& series() const { return series_->table(); }
   const TimeSeries& membrane() const { return membrane_->table(); } ///< cm -> mm, one column per probe
 
@@ -58,13 +61,12 @@ private:
   void write_summaries() const;
 
   std::filesystem::path folder_;
-  const PreparedScene& prepared_;
+  LevelView view_;
   const Scene& scene_;
   SceneStamp stamp_;
   std::map<std::string, std::string> provenance_;
   int saved_step_ = -1;
   std::optional<TimeSeriesFile> series_, membrane_;
-  FluidPicture<2> fluid_picture_;
   std::optional<FieldWriter<2>> fluid_writer_, solid_writer_;
 };
 

@@ -21,22 +21,22 @@ Checkpoint checkpoint_of(const State& state, const SceneStamp& scene,
   return checkpoint;
 }
 
-State state_of(const Checkpoint& checkpoint, int unknowns, const std::filesystem::path& file) {
-  const auto array = [&](const char* name) -> Eigen::VectorXd {
+State state_of(const Checkpoint& checkpoint, const State& like, const std::filesystem::path& file) {
+  const auto array = [&](const char* name, Eigen::Index expected) -> Eigen::VectorXd {
     const auto found = checkpoint.arrays.find(name);
     const auto size = found == checkpoint.arrays.end() ? 0 : found->second.size();
-    if (size != static_cast<std::size_t>(unknowns))
+    if (found == checkpoint.arrays.end() || size != static_cast<std::size_t>(expected))
       throw InputError("the checkpoint does not fit the mesh",
                        "array " + std::string(name) + " of " + std::to_string(size) + " values",
-                       std::to_string(unknowns) + " values", file.string());
-    return Eigen::Map<const Eigen::VectorXd>(found->second.data(), unknowns);
+                       std::to_string(expected) + " values", file.string());
+    return Eigen::Map<const Eigen::VectorXd>(found->second.data(), expected);
   };
   State state;
   state.step = checkpoint.step;
   state.time = checkpoint.time;
   for (std::size_t level = 0; level < 2; ++level) {
-    state.x[level] = array(x_names[level]);
-    state.d[level] = array(d_names[level]);
+    state.x[level] = array(x_names[level], like.x[level].size());
+    state.d[level] = array(d_names[level], like.d[level].size());
   }
   return state;
 }

@@ -12,7 +12,7 @@ Checkpoint checkpoint_of(const State& state, const SceneStamp& scene,
                          const std::map<std::string, std::string>& provenance);
 
 /// The state in a checkpoint. Throws InputError, naming `file`, if an array is missing or has not the size
-/// `unknowns`.
-State state_of(const Checkpoint& checkpoint, int unknowns, const std::filesystem::path& file);
+/// that it has in `like`.
+State state_of(const Checkpoint& checkpoint, const State& like, const std::filesystem::path& file);
 
 } // namespace undula

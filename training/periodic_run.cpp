@@ -36,17 +36,17 @@ Eigen::VectorXd select(const Eigen::VectorXd& x, const std::vector<int>& unknown
 
 TimeSeries empty_series() {
   TimeSeries series;
-  series.columns = {"outflow_l_per_min", "inflow_l_per_min", "hydraulic_power_mW", "speed_max_cm_per_s",
-                    "clearance_min_mm"};
+  series.columns = {"outflow_l_per_min", "inflow_l_per_min",   "hydraulic_power_mW",
+                    "holder_power_mW",   "speed_max_cm_per_s", "clearance_min_mm"};
   return series;
 }
 
 void append(TimeSeries& series, const Observation& seen) {
   constexpr double mW_per_erg_per_s = 1e-4;
   series.steps.push_back(seen.step);
-  for (const double value :
-       {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
-        seen.hydraulic_power * mW_per_erg_per_s, seen.speed_max, units::length_to_mm(seen.clearance_min)})
+  for (const double value : {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
+                             seen.hydraulic_power * mW_per_erg_per_s, seen.energy.holder * mW_per_erg_per_s,
+                             seen.speed_max, units::length_to_mm(seen.clearance_min)})
     series.values.push_back(value);
 }
 
