@@ -239,12 +239,18 @@ void assemble_passages(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen:
     write<3>(Value<derive, 3>(step.outlet_pressure - y[0] - drop), at.tip_pressure, places, residual, matrix);
   }
   const int last = at.nodes - 1, upper = at.upper_flow(at.nodes), lower = at.lower_flow(at.nodes);
-  { // Rim, from the lower to the upper chamber.
-    const std::array<int, 3> places = {lower, at.lower_pressure(last), at.upper_pressure(last)};
-    const auto y = read<derive, 3>(x, places);
-    const Value<derive, 3> drop =
+  { // Rim, from the lower to the upper chamber. The flow brings along what kinetic pressure it has below.
+    const std::array<int, 5> places = {lower, at.lower_pressure(last), at.upper_pressure(last),
+                                       at.lower_flow(last), at.deflection_rate(last)};
+    const auto y = read<derive, 5>(x, places);
+    const Value<derive, 5> drop =
         passage_drop(law, layout.rim, rim_losses(law), y[0], time_derivative(step, y[0], history[lower]));
-    write<3>(Value<derive, 3>(y[1] - y[2] - drop), lower, places, residual, matrix);
+    Value<derive, 5> below = y[1];
+    if (law.convective)
+      below += kinetic_pressure(
+          law, Value<derive, 5>((y[3] + y[0]) /
+                                (4 * pi * layout.radius[last] * height(step, Side::lower, last, y[4]))));
+    write<5>(Value<derive, 5>(below - y[2] - drop), lower, places, residual, matrix);
   }
   { // Inlet: the upper chamber gives to the gap what comes by the rim and by the inlet.
     const std::array<int, 3> places = {upper, lower, at.upper_pressure(last)};
