@@ -189,7 +189,7 @@ std::vector<SceneKey> thin_gap_keys() {
        shapes_state, RealKey{FIELD(thin_gap.film_thickness), cm_per_mm, above_to(0, 10), 0.05}},
       {"thin_gap.contact_stiffness_dyn_per_cm3", "dyn_per_cm3",
        "pressure of contact per depth below the film thickness", shapes_state,
-       RealKey{FIELD(thin_gap.contact_stiffness), 1, from_to(0, 1e15), 1e8}},
+       RealKey{FIELD(thin_gap.contact_stiffness), 1, from_to(0, 1e15), 1e9}},
       part("thin_gap.throat_recovery",
            "part of the kinetic energy that returns to pressure where the flow of a gap slows down; 1: "
            "Bernoulli",

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "geometry/passage_flow.hpp"
-#include "geometry/vertical_clearance.hpp"
+#include "geometry/wall_ray.hpp"
 
 namespace undula {
 

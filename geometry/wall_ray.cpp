@@ -1,4 +1,4 @@
-#include "geometry/vertical_clearance.hpp"
+#include "geometry/wall_ray.hpp"
 
 #include <algorithm>
 

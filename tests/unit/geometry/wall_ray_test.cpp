@@ -1,5 +1,5 @@
 // Vertical rays from the membrane to the walls.
-#include "geometry/vertical_clearance.hpp"
+#include "geometry/wall_ray.hpp"
 
 #include <gtest/gtest.h>
 
