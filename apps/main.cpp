@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   undula::add_train_command(app);
   undula::add_hq_command(app);
   undula::add_validate_command(app);
+  undula::add_calibrate_command(app);
 
   // 3. Run; every failure becomes one message and an exit code.
   try {

@@ -31,6 +31,22 @@ bool read_number(std::string_view text, double& value) {
          std::isfinite(value);
 }
 
+/// Reads "# key = number" into `value`; leaves other comments alone.
+void read_setting(std::string_view comment, std::string_view key, std::optional<double>& value,
+                  const std::string& where) {
+  const auto equals = comment.find('=');
+  if (equals == std::string_view::npos || trimmed(comment.substr(1, equals - 1)) != key) {
+    return;
+  }
+  double number = 0;
+  if (!read_number(comment.substr(equals + 1), number) || !(number > 0) || value) {
+    throw InputError("the measured data do not state how the pump was driven",
+                     std::string(comment.substr(0, 80)),
+                     "one line # " + std::string(key) + " = a positive number", where);
+  }
+  value = number;
+}
+
 /// Sorts both columns by head, then flow.
 void sort_samples(MeasuredCurve& curve) {
   std::vector<std::pair<double, double>> samples;
@@ -63,7 +79,14 @@ MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
     ++line_number;
     const std::string_view text = trimmed(line);
     const std::string where = file.string() + ":" + std::to_string(line_number);
-    if (text.empty() || text.front() == '#') {
+    if (text.empty()) {
+      continue;
+    }
+    if (text.front() == '#') {
+      if (!has_header) {
+        read_setting(text, "frequency_Hz", curve.frequency_Hz, where);
+        read_setting(text, "stroke_mm", curve.stroke_mm, where);
+      }
       continue;
     }
     if (!has_header) {

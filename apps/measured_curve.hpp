@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct MeasuredCurve {
   std::vector<double> head_mmHg;
   std::vector<double> flow_l_per_min; ///< same length
   QuadraticFit fit;
+  std::optional<double> frequency_Hz, stroke_mm; ///< the pump was driven with, where the file states them
 };
 
 /// One head of a measured curve: what the fit gives there, and what its nearest sample measured.
@@ -33,8 +35,10 @@ struct ExtractedPoint {
 };
 
 /// Reads a CSV file with the header line `head_mmHg,flow_l_per_min`, one sample per line; lines that start
-/// with # and empty lines are skipped. Throws InputError with file and line for a missing file, another
-/// header, a line that is not two finite numbers, and for fewer than three different heads.
+/// with # and empty lines are skipped, but for `# frequency_Hz = 120` and `# stroke_mm = 0.53` before the
+/// header. Throws InputError with file and line for a missing file, another header, a frequency or stroke
+/// that is not a positive number or stated twice, a line that is not two finite numbers, and for fewer than
+/// three different heads.
 MeasuredCurve read_measured_curve(const std::filesystem::path& file);
 
 /// Least-squares parabola through samples (same lengths, at least three different heads).

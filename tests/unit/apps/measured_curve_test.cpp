@@ -53,6 +53,20 @@ TEST(MeasuredCurve, SamplesAreSortedAndSpacesCommentsAndWindowsLineEndsAreRead) 
   EXPECT_EQ(curve.flow_l_per_min, (std::vector<double>{2, 3, 2.5, 1}));
 }
 
+TEST(MeasuredCurve, FrequencyAndStrokeAreReadWhereTheFileStatesThem) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  EXPECT_EQ(curve.frequency_Hz, 120);
+  EXPECT_EQ(curve.stroke_mm, 0.53);
+  const ScratchFolder folder;
+  const auto file = folder.path() / "data.csv";
+  std::ofstream(file) << "# remark = 3\n#stroke_mm=0.4 \nhead_mmHg,flow_l_per_min\n# frequency_Hz = 90\n"
+                         "60,1\n50,2\n40,3\n";
+  EXPECT_EQ(read_measured_curve(file).stroke_mm, 0.4);
+  EXPECT_FALSE(read_measured_curve(file).frequency_Hz); // only the lines before the columns count
+  std::ofstream(file) << "# stroke_mm = 0.4\n# stroke_mm = 0.5\nhead_mmHg,flow_l_per_min\n60,1\n50,2\n40,3\n";
+  EXPECT_THROW(read_measured_curve(file), InputError);
+}
+
 TEST(MeasuredCurve, ExtractionGivesTheFitAndTheNearestSample) {
   const MeasuredCurve curve = read_measured_curve(shipped);
   const std::vector<double> heads = {50};
