@@ -4,6 +4,7 @@
 //   undula hq model.h5 --frequency 120 --stroke 0.53 --data data/measured/corwave_120hz_0.53mm.csv --plot
 //   hq.png
 //   undula hq data/scenes/wave_pump_thin_gap.toml --data data/measured/corwave_120hz_0.53mm.csv --plot hq.png
+//   undula hq data/scenes/wave_pump_thin_gap.toml --band --plot hq.png
 //   undula hq data/scenes/wave_pump_fixed.toml --head 0,20,40,60 --set mesh.gap_elements=3
 #include <spdlog/spdlog.h>
 
@@ -27,6 +28,8 @@
 #include "base/units.hpp"
 #include "fom/root_rank.hpp"
 #include "training/curve.hpp"
+#include "training/scene_flows.hpp"
+#include "training/uncertainty.hpp"
 
 namespace undula {
 namespace {
@@ -41,15 +44,16 @@ struct HqCommandOptions {
   std::string data;
   std::string runs;
   std::string picture;
+  bool band = false;
   bool json = false;
   std::vector<std::string> overrides;
   std::vector<std::string> petsc;
 };
 
 void hq_of_model(const HqCommandOptions& options) {
-  if (!options.overrides.empty() || !options.petsc.empty()) {
+  if (!options.overrides.empty() || !options.petsc.empty() || options.band) {
     throw InputError("options of scenes do not go with a reduced model", options.model,
-                     "a scene (.toml) with --set and options for PETSc", "the command line");
+                     "a scene (.toml) with --set, --band and options for PETSc", "the command line");
   }
   if (!options.frequency_Hz || !options.stroke_mm) {
     throw CLI::RequiredError(options.frequency_Hz ? "--stroke" : "--frequency");
@@ -106,6 +110,21 @@ void hq_of_model(const HqCommandOptions& options) {
   }
 }
 
+/// The band of a curve. Curves of thin gaps need one rank each, so that every rank computes its own; those of
+/// finite elements take all ranks one after the other.
+UncertaintyBand band_of_curve(const Scene& scene, std::span<const CurvePoint> points, MPI_Comm comm) {
+  std::vector<double> heads, flows;
+  for (const CurvePoint& point : points) {
+    heads.push_back(point.head_mmHg);
+    flows.push_back(point.flow_l_per_min);
+  }
+  const bool alone = scene.space == Space::thin_gap;
+  const MPI_Comm curve_comm = alone ? MPI_COMM_SELF : comm;
+  return propagate_tolerances(
+      scene, flows, [&](const Scene& moved) { return scene_flows(moved, heads, curve_comm).flow_l_per_min; },
+      alone ? comm : MPI_COMM_SELF);
+}
+
 void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
   // 1. Everything that may be wrong with the input comes before the first result.
   const auto begin = std::chrono::steady_clock::now();
@@ -114,6 +133,9 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
   }
   const Scene scene =
       read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
+  if (options.band) {
+    check_tolerances(scene);
+  }
   const std::vector<double> heads =
       options.heads.empty() ? even_heads(units::pressure_to_mmHg(scene.training.head_low),
                                          units::pressure_to_mmHg(scene.training.head_high), default_points)
@@ -146,9 +168,14 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
       }
     });
   }
+  // 3. What the tolerances of the inputs do to it.
+  std::optional<UncertaintyBand> band;
+  if (options.band) {
+    band = band_of_curve(scene, points, comm);
+  }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
 
-  // 3. Numbers to stdout, picture beside them.
+  // 4. Numbers to stdout, picture beside them.
   on_root(comm, [&] {
     for (const CurvePoint& point : points) {
       if (!point.periodic) {
@@ -161,9 +188,17 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
     if (!options.json) { // JSON holds the time itself
       spdlog::info("{} points in {} s", points.size(), decimals(elapsed.count(), 1));
     }
-    const SceneReport report = {scene, unknowns(level), points,
-                                timer, elapsed.count(), measured ? &*measured : nullptr};
+    const SceneReport report = {scene,
+                                unknowns(level),
+                                points,
+                                timer,
+                                elapsed.count(),
+                                measured ? &*measured : nullptr,
+                                band ? &*band : nullptr};
     std::cout << (options.json ? scene_curve_json(report) : scene_curve_table(report));
+    if (band && !options.json) {
+      std::cout << "\n" << sensitivity_table(report);
+    }
     if (!options.picture.empty()) {
       plot_scene_curve(options.picture, report, other_runs);
     }
@@ -196,6 +231,8 @@ void add_hq_command(CLI::App& app) {
   command->add_option("--runs", options->runs,
                       "full-order runs to draw beside the curve (what `hq SCENE --json` prints)");
   command->add_option("--plot", options->picture, "picture to draw (.png)");
+  command->add_flag("--band", options->band,
+                    "of a scene: the band that the tolerances of its inputs give, and what each contributes");
   command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--set", options->overrides,

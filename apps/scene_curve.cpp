@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "apps/hq_report.hpp"
 #include "apps/plots.hpp"
@@ -29,6 +30,9 @@ std::string scene_curve_table(const SceneReport& report) {
   if (report.measured != nullptr) {
     header.emplace_back("measured, fit (l/min)");
   }
+  if (report.band != nullptr) {
+    header.emplace_back("by tolerances (l/min)");
+  }
   std::vector<std::vector<std::string>> rows;
   for (const CurvePoint& point : report.points) {
     rows.push_back({decimals(point.head_mmHg, 2), number_or_failed(point.flow_l_per_min, 4),
@@ -40,8 +44,42 @@ std::string scene_curve_table(const SceneReport& report) {
       const auto flow = measured_flow(*report.measured, point.head_mmHg);
       rows.back().push_back(flow ? decimals(*flow, 3) : "-");
     }
+    if (report.band != nullptr) {
+      const double width = report.band->half_width[rows.size() - 1];
+      rows.back().push_back(std::isfinite(width) ? "-+" + decimals(width, 3) : "unknown");
+    }
   }
   return text_table(header, rows);
+}
+
+std::string sensitivity_table(const SceneReport& report) {
+  // 1. The lowest, middle and highest head.
+  std::vector<std::size_t> upwards(report.points.size());
+  std::iota(upwards.begin(), upwards.end(), std::size_t{0});
+  std::ranges::stable_sort(upwards, {}, [&](std::size_t i) { return report.points[i].head_mmHg; });
+  std::vector<std::size_t> shown = {upwards.front(), upwards[upwards.size() / 2], upwards.back()};
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+
+  // 2. One row per input: change of the flow at value + tolerance / value - tolerance.
+  std::vector<std::string> header = {"input", "value", "tolerance"};
+  for (const std::size_t i : shown) {
+    header.push_back("+/- at " + shortest(report.points[i].head_mmHg) + " mmHg (l/min)");
+  }
+  const auto signed_number = [](double value) {
+    return std::isfinite(value) ? (value >= 0 ? "+" : "") + decimals(value, 3) : std::string("unknown");
+  };
+  std::vector<std::vector<std::string>> rows;
+  std::string notes;
+  for (const InputEffect& input : report.band->inputs) {
+    rows.push_back({input.key, shortest(input.value), shortest(input.tolerance)});
+    for (const std::size_t i : shown) {
+      rows.back().push_back(signed_number(input.up[i]) + " / " + signed_number(input.down[i]));
+    }
+    if (!input.note.empty()) {
+      notes += input.key + ": one side alone where the other is unknown (" + input.note + ")\n";
+    }
+  }
+  return text_table(header, rows) + notes;
 }
 
 std::string scene_curve_json(const SceneReport& report) {
@@ -56,7 +94,8 @@ std::string scene_curve_json(const SceneReport& report) {
   for (const auto& [phase, record] : report.preparation.records()) {
     result["preparation_seconds"][phase] = record.seconds;
   }
-  for (const CurvePoint& point : report.points) {
+  for (std::size_t i = 0; i < report.points.size(); ++i) {
+    const CurvePoint& point = report.points[i];
     nlohmann::ordered_json entry = {{"head_mmHg", point.head_mmHg},
                                     {"flow_l_per_min", finite_or_null(point.flow_l_per_min)},
                                     {"error_l_per_min", nullptr},
@@ -74,7 +113,30 @@ std::string scene_curve_json(const SceneReport& report) {
       const auto flow = measured_flow(*report.measured, point.head_mmHg);
       entry["measured_l_per_min"] = flow ? nlohmann::ordered_json(*flow) : nlohmann::ordered_json(nullptr);
     }
+    if (report.band != nullptr) {
+      entry["error_l_per_min"] = finite_or_null(report.band->half_width[i]);
+      entry["error_low_l_per_min"] = finite_or_null(report.band->low[i]);
+      entry["error_high_l_per_min"] = finite_or_null(report.band->high[i]);
+    }
     result["points"].push_back(std::move(entry));
+  }
+  if (report.band != nullptr) {
+    const auto list = [](std::span<const double> values) {
+      auto numbers = nlohmann::ordered_json::array();
+      for (const double value : values) {
+        numbers.push_back(finite_or_null(value));
+      }
+      return numbers;
+    };
+    result["tolerances"] = nlohmann::ordered_json::array();
+    for (const InputEffect& input : report.band->inputs) {
+      result["tolerances"].push_back({{"key", input.key},
+                                      {"value", input.value},
+                                      {"tolerance", input.tolerance},
+                                      {"plus_l_per_min", list(input.up)},
+                                      {"minus_l_per_min", list(input.down)},
+                                      {"note", input.note}});
+    }
   }
   return result.dump(2) + "\n";
 }
@@ -109,17 +171,20 @@ SceneCurve read_scene_curve(const std::filesystem::path& file) {
 
 bool plot_scene_curve(const std::filesystem::path& picture, const SceneReport& report,
                       const std::optional<SceneCurve>& other_runs) {
-  std::vector<const CurvePoint*> upwards;
-  for (const CurvePoint& point : report.points) {
-    if (std::isfinite(point.flow_l_per_min)) {
-      upwards.push_back(&point);
+  std::vector<std::size_t> upwards;
+  for (std::size_t i = 0; i < report.points.size(); ++i) {
+    if (std::isfinite(report.points[i].flow_l_per_min)) {
+      upwards.push_back(i);
     }
   }
-  std::ranges::stable_sort(upwards, {}, &CurvePoint::head_mmHg);
-  std::vector<double> head, flow;
-  for (const CurvePoint* point : upwards) {
-    head.push_back(point->head_mmHg);
-    flow.push_back(point->flow_l_per_min);
+  std::ranges::stable_sort(upwards, {}, [&](std::size_t i) { return report.points[i].head_mmHg; });
+  std::vector<double> head, flow, error;
+  for (const std::size_t i : upwards) {
+    head.push_back(report.points[i].head_mmHg);
+    flow.push_back(report.points[i].flow_l_per_min);
+    if (report.band != nullptr) {
+      error.push_back(std::isfinite(report.band->half_width[i]) ? report.band->half_width[i] : 0.0);
+    }
   }
   const double frequency_Hz = report.scene.operating_point.frequency;
   std::vector<HqPoints> point_sets;
@@ -132,7 +197,9 @@ bool plot_scene_curve(const std::filesystem::path& picture, const SceneReport& r
   }
   const std::string title = report.scene.name + ": " + shortest(frequency_Hz) + " Hz, stroke " +
                             shortest(stroke_mm(report.scene)) + " mm";
-  return plot_hq_curve(picture, title, {"full-order model", head, flow, {}, {}}, point_sets);
+  return plot_hq_curve(picture, title,
+                       {"full-order model", head, flow, error, "by tolerances of the inputs (95 %)"},
+                       point_sets);
 }
 
 } // namespace undula

@@ -11,6 +11,7 @@
 #include "base/phase_timer.hpp"
 #include "fom/scene/scene.hpp"
 #include "training/curve.hpp"
+#include "training/uncertainty.hpp"
 
 namespace undula {
 
@@ -34,14 +35,19 @@ struct SceneReport {
   const PhaseTimer& preparation;
   double seconds = 0;                      ///< wall time of preparation and curve
   const MeasuredCurve* measured = nullptr; ///< nullptr: no data given
+  const UncertaintyBand* band = nullptr;   ///< by the tolerances of the scene; nullptr: not asked for
 };
 
 /// Columns head, flows, spread, speed, clearance, periods; with data also the measured fit at that head.
 /// Numbers are "failed" where the numerics failed.
 std::string scene_curve_table(const SceneReport& report);
 
-/// JSON: `points[]` as of a reduced model (hq_json) without inside_training_box, error_l_per_min null, and
-/// what CurvePoint holds besides; null where the numerics failed.
+/// What each tolerance does to the flow at the lowest, middle and highest head; needs a band.
+std::string sensitivity_table(const SceneReport& report);
+
+/// JSON: `points[]` as of a reduced model (hq_json) without inside_training_box, error_l_per_min that of the
+/// band (null without one), and what CurvePoint holds besides; null where the numerics failed. With a band
+/// also `tolerances[]`, the change of the flow at every head by either end of every tolerance.
 std::string scene_curve_json(const SceneReport& report);
 
 /// The curve as a line with its points, other runs at this frequency and stroke, measured samples. Returns
