@@ -17,7 +17,7 @@ model = { space = "thin-gap", coupling = "implicit", solid = "von-karman" }
 geometry.profile = "wave_pump_profile.toml"
 fluid = { density_g_per_cm3 = 1.0, viscosity_poise = 0.035 }
 mesh = { channel_size_mm = 0.8, membrane_size_mm = 0.4 }
-thin_gap.cells = 48
+thin_gap = { cells = 48, contact_stiffness_dyn_per_cm3 = 1e9 }
 [membrane]
 density_g_per_cm3 = 1.125
 young_dyn_per_cm2 = 1.686e7
