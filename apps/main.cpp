@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   undula::add_hq_command(app);
   undula::add_validate_command(app);
   undula::add_calibrate_command(app);
+  undula::add_report_command(app);
 
   // 3. Run; every failure becomes one message and an exit code.
   try {
