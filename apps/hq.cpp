@@ -43,6 +43,7 @@ struct HqCommandOptions {
   std::string heads;
   std::string data;
   std::string runs;
+  std::string beside;
   std::string picture;
   bool band = false;
   bool json = false;
@@ -50,7 +51,18 @@ struct HqCommandOptions {
   std::vector<std::string> petsc;
 };
 
+void warn_outside(const rom::Model& model, double frequency_Hz, double stroke_mm,
+                  std::span<const double> heads) {
+  for (const std::string& line : rom::outside_training_box(model.box, frequency_Hz, stroke_mm, heads)) {
+    spdlog::warn("{}", line);
+  }
+}
+
 void hq_of_model(const HqCommandOptions& options) {
+  if (!options.beside.empty()) {
+    throw InputError("a reduced model stands beside a scene only", options.beside,
+                     "a scene (.toml) with --beside", "the command line");
+  }
   if (!options.overrides.empty() || !options.petsc.empty() || options.band) {
     throw InputError("options of scenes do not go with a reduced model", options.model,
                      "a scene (.toml) with --set, --band and options for PETSc", "the command line");
@@ -87,10 +99,7 @@ void hq_of_model(const HqCommandOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const auto points = rom::hq_curve(model, *options.frequency_Hz, *options.stroke_mm, heads);
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
-  for (const std::string& line :
-       rom::outside_training_box(model.box, *options.frequency_Hz, *options.stroke_mm, heads)) {
-    spdlog::warn("{}", line);
-  }
+  warn_outside(model, *options.frequency_Hz, *options.stroke_mm, heads);
   for (const rom::HqPoint& point : points) {
     if (!point.converged) {
       spdlog::warn("no periodic state at {} mmHg: the flow is the mean of the last period", point.head_mmHg);
@@ -148,6 +157,10 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
   if (!options.runs.empty()) {
     other_runs = read_scene_curve(options.runs);
   }
+  std::optional<rom::Model> model;
+  if (!options.beside.empty()) {
+    model = rom::load_model(options.beside);
+  }
 
   // 2. The periodic state at every head, on a level prepared once.
   int rank = 0;
@@ -174,6 +187,15 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
     band = band_of_curve(scene, points, comm);
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  std::vector<rom::HqPoint> reduced;
+  if (model) {
+    const double frequency_Hz = scene.operating_point.frequency;
+    const double stroke_mm = units::length_to_mm(scene.operating_point.stroke);
+    reduced = rom::hq_curve(*model, frequency_Hz, stroke_mm, heads);
+    if (rank == 0) {
+      warn_outside(*model, frequency_Hz, stroke_mm, heads);
+    }
+  }
 
   // 4. Numbers to stdout, picture beside them.
   on_root(comm, [&] {
@@ -194,7 +216,8 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
                                 timer,
                                 elapsed.count(),
                                 measured ? &*measured : nullptr,
-                                band ? &*band : nullptr};
+                                band ? &*band : nullptr,
+                                reduced};
     std::cout << (options.json ? scene_curve_json(report) : scene_curve_table(report));
     if (band && !options.json) {
       std::cout << "\n" << sensitivity_table(report);
@@ -230,6 +253,7 @@ void add_hq_command(CLI::App& app) {
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)");
   command->add_option("--runs", options->runs,
                       "full-order runs to draw beside the curve (what `hq SCENE --json` prints)");
+  command->add_option("--beside", options->beside, "reduced model (.h5) to show beside a scene's curve");
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--band", options->band,
                     "of a scene: the band that the tolerances of its inputs give, and what each contributes");

@@ -78,7 +78,7 @@ bool plot_hq_curve(const std::filesystem::path& picture, const std::string& titl
   }
   items.push_back(plot_item(curve, "with lines lw 2 lc rgb '#1f4e8c'", line.label));
 
-  // 3. The points.
+  // 3. The points and further curves.
   const std::array styles = {"with points pt 6 ps 1 lc rgb '#c0392b'",
                              "with points pt 7 ps 1.2 lc rgb '#1f4e8c'",
                              "with points pt 4 ps 1.2 lc rgb '#27853f'"};
@@ -91,7 +91,8 @@ bool plot_hq_curve(const std::filesystem::path& picture, const std::string& titl
     for (std::size_t i = 0; i < points.head_mmHg.size(); ++i) {
       blocks.add(row(points.flow_l_per_min[i], points.head_mmHg[i]));
     }
-    items.push_back(plot_item(block, styles[set++ % styles.size()], points.label));
+    items.push_back(points.as_curve ? plot_item(block, "with lines lw 2 dt 2 lc rgb '#8e44ad'", points.label)
+                                    : plot_item(block, styles[set++ % styles.size()], points.label));
   }
   const std::string commands = axes(title, "flow (l/min)", "head (mmHg)") +
                                "set grid\nset key bottom left\n" + plot_command("plot", items);

@@ -20,11 +20,12 @@ struct HqLine {
   std::string band_label;
 };
 
-/// Points without a line: measured, or full-order runs.
+/// What stands beside the line: points (measured, full-order runs), or another curve.
 struct HqPoints {
   std::string label;
   std::span<const double> head_mmHg;
   std::span<const double> flow_l_per_min;
+  bool as_curve = false; ///< a dashed line through them, in their order
 };
 
 /// Head over flow: the line with its band, and any number of sets of points (empty sets are left out).

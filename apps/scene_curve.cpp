@@ -33,6 +33,9 @@ std::string scene_curve_table(const SceneReport& report) {
   if (report.band != nullptr) {
     header.emplace_back("by tolerances (l/min)");
   }
+  if (!report.reduced.empty()) {
+    header.emplace_back("reduced model (l/min)");
+  }
   std::vector<std::vector<std::string>> rows;
   for (const CurvePoint& point : report.points) {
     rows.push_back({decimals(point.head_mmHg, 2), number_or_failed(point.flow_l_per_min, 4),
@@ -47,6 +50,9 @@ std::string scene_curve_table(const SceneReport& report) {
     if (report.band != nullptr) {
       const double width = report.band->half_width[rows.size() - 1];
       rows.back().push_back(std::isfinite(width) ? "-+" + decimals(width, 3) : "unknown");
+    }
+    if (!report.reduced.empty()) {
+      rows.back().push_back(decimals(report.reduced[rows.size() - 1].flow_l_per_min, 3));
     }
   }
   return text_table(header, rows);
@@ -118,6 +124,11 @@ std::string scene_curve_json(const SceneReport& report) {
       entry["error_low_l_per_min"] = finite_or_null(report.band->low[i]);
       entry["error_high_l_per_min"] = finite_or_null(report.band->high[i]);
     }
+    if (!report.reduced.empty()) {
+      entry["reduced_model"] = {{"flow_l_per_min", report.reduced[i].flow_l_per_min},
+                                {"error_l_per_min", finite_or_null(report.reduced[i].error_l_per_min)},
+                                {"inside_training_box", report.reduced[i].inside_training_box}};
+    }
     result["points"].push_back(std::move(entry));
   }
   if (report.band != nullptr) {
@@ -188,6 +199,15 @@ bool plot_scene_curve(const std::filesystem::path& picture, const SceneReport& r
   }
   const double frequency_Hz = report.scene.operating_point.frequency;
   std::vector<HqPoints> point_sets;
+  std::vector<double> reduced;
+  for (const std::size_t i : upwards) {
+    if (!report.reduced.empty()) {
+      reduced.push_back(report.reduced[i].flow_l_per_min);
+    }
+  }
+  if (!reduced.empty()) {
+    point_sets.push_back({"reduced model", head, reduced, true});
+  }
   if (other_runs && same_setting(other_runs->frequency_Hz, frequency_Hz) &&
       same_setting(other_runs->stroke_mm, stroke_mm(report.scene))) {
     point_sets.push_back({"other full-order runs", other_runs->head_mmHg, other_runs->flow_l_per_min});

@@ -10,6 +10,7 @@
 #include "apps/measured_curve.hpp"
 #include "base/phase_timer.hpp"
 #include "fom/scene/scene.hpp"
+#include "hq_curve.hpp"
 #include "training/curve.hpp"
 #include "training/uncertainty.hpp"
 
@@ -36,10 +37,11 @@ struct SceneReport {
   double seconds = 0;                      ///< wall time of preparation and curve
   const MeasuredCurve* measured = nullptr; ///< nullptr: no data given
   const UncertaintyBand* band = nullptr;   ///< by the tolerances of the scene; nullptr: not asked for
+  std::span<const rom::HqPoint> reduced;   ///< a reduced model at the same heads; empty: none beside it
 };
 
-/// Columns head, flows, spread, speed, clearance, periods; with data also the measured fit at that head.
-/// Numbers are "failed" where the numerics failed.
+/// Columns head, flows, spread, speed, clearance, periods; with data also the measured fit at that head,
+/// with a reduced model beside it its flow. Numbers are "failed" where the numerics failed.
 std::string scene_curve_table(const SceneReport& report);
 
 /// What each tolerance does to the flow at the lowest, middle and highest head; needs a band.
