@@ -217,8 +217,8 @@ bool plot_scene_curve(const std::filesystem::path& picture, const SceneReport& r
   }
   const std::string title = report.scene.name + ": " + shortest(frequency_Hz) + " Hz, stroke " +
                             shortest(stroke_mm(report.scene)) + " mm";
-  return plot_hq_curve(picture, title,
-                       {"full-order model", head, flow, error, "by tolerances of the inputs (95 %)"},
+  const char* label = report.scene.space == Space::thin_gap ? "thin-gap model" : "full-order model";
+  return plot_hq_curve(picture, title, {label, head, flow, error, "by tolerances of the inputs (95 %)"},
                        point_sets);
 }
 

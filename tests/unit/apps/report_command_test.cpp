@@ -61,6 +61,24 @@ TEST(ReportCommand, ComparesAllLevelsAndTheirSettings) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "report.gp"));
 }
 
+TEST(ReportCommand, FindsTheCalibratedSceneAsNearToTheDataAsItsHeaderSays) {
+  const std::string calibrated = root + "/data/scenes/wave_pump_thin_gap_calibrated.toml";
+  const std::string header = text_of(calibrated);
+  const std::string before = "l/min before, ";
+  const auto place = header.find(before);
+  ASSERT_NE(place, std::string::npos);
+  const double stated = std::stod(header.substr(place + before.size()));
+  const ScratchFolder folder;
+  const Outcome outcome = run_undula({"report", calibrated, "--data", data, "--frequency", "120", "--stroke",
+                                      "0.53", "--points", "6", "--json"},
+                                     folder.path());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const auto level = nlohmann::json::parse(outcome.out)["levels"][0];
+  // Flows repeat from period to period to some 0.01 l/min.
+  EXPECT_NEAR(level["rms_to_data_l_per_min"].get<double>(), stated, 0.02);
+  EXPECT_LT(stated, 0.4);
+}
+
 TEST(ReportCommand, RefusesRunsOfAnotherOperatingPointAndBadVariations) {
   const ScratchFolder folder;
   const auto refused = [&](const std::vector<std::string>& words, const std::string& text) {
