@@ -21,6 +21,7 @@
 #include "fom/io/text_file.hpp"
 #include "fom/root_rank.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_tolerance.hpp"
 
 namespace undula {
 namespace {
@@ -158,7 +159,10 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
 
   // 3. The scene and the numbers; the picture beside them.
   on_root(comm, [&] {
-    const Scene calibrated = with_values(scene, keys, calibration.optimum);
+    Scene calibrated = with_values(scene, keys, calibration.optimum);
+    for (const FreeKey& key : keys) {
+      narrow_tolerance(calibrated, key.key);
+    }
     const CalibrationReport report = {calibrated, keys, targets, calibration};
     const auto folder = std::filesystem::absolute(options.output).parent_path();
     replace_text_file(options.output, calibrated_scene_text(report, folder));

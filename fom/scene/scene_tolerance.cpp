@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "fom/scene/scene_key_search.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "fom/scene/scene_value.hpp"
 
 namespace undula {
 namespace {
@@ -35,6 +37,16 @@ void set_tolerance(Scene& scene, const std::string& key, double tolerance) {
   const auto next = std::find_if(all.begin(), all.end(),
                                  [&](const Tolerance& stated) { return place_in_table(stated.key) > place; });
   all.insert(next, Tolerance{key, tolerance});
+}
+
+void narrow_tolerance(Scene& scene, const std::string& key) {
+  const double value = surface_value(scene, key);
+  const AllowedRange& allowed = std::get<RealKey>(find_key(key)->value).allowed;
+  double tolerance = std::min({tolerance_of(scene, key), value - allowed.low, allowed.high - value});
+  // An open end itself is refused.
+  if (tolerance > 0 && !(allowed.contains(value - tolerance) && allowed.contains(value + tolerance)))
+    tolerance *= 1 - 1e-6;
+  set_tolerance(scene, key, std::max(tolerance, 0.0));
 }
 
 } // namespace undula

@@ -15,4 +15,8 @@ double tolerance_of(const Scene& scene, std::string_view key);
 /// Scene::tolerances in the order of the scene table.
 void set_tolerance(Scene& scene, const std::string& key, double tolerance);
 
+/// Narrows the tolerance of a real-valued key, if one is stated, to what keeps value -+ tolerance within the
+/// key's allowed range, so that the scene can be written and read. Throws InputError as surface_value.
+void narrow_tolerance(Scene& scene, const std::string& key);
+
 } // namespace undula

@@ -64,6 +64,22 @@ TEST(SceneTolerance, ANumberKeepsTheToleranceOfTheFileAndATableReplacesIt) {
   EXPECT_THROW(parsed({stroke + "=0.009"}), InputError);
 }
 
+TEST(SceneTolerance, NarrowsToWhatTheRangeOfTheKeyAllows) {
+  const std::string poisson = "membrane.poisson"; // in (-1, 0.5), both ends refused
+  Scene scene = with_value(with({stroke + "={ value = 0.5, tolerance = 0.2 }"}), stroke, 0.05);
+  scene = with_value(scene, poisson, 0.49);
+  set_tolerance(scene, poisson, 0.3);
+  set_tolerance(scene, "fluid.density_g_per_cm3", 0.1);
+  for (const std::string& key : {stroke, poisson, std::string("fluid.density_g_per_cm3")}) {
+    narrow_tolerance(scene, key);
+  }
+  EXPECT_DOUBLE_EQ(tolerance_of(scene, stroke), 0.05);
+  EXPECT_NEAR(tolerance_of(scene, poisson), 0.01, 1e-7);
+  EXPECT_LT(tolerance_of(scene, poisson), 0.01);
+  EXPECT_EQ(tolerance_of(scene, "fluid.density_g_per_cm3"), 0.1);
+  EXPECT_NO_THROW(parse_scene(scene_to_toml(scene), "narrowed", UNDULA_SOURCE_DIR "/data/scenes"));
+}
+
 TEST(SceneTolerance, TheyAreKeptInTheOrderOfTheTable) {
   const Scene scene =
       with({"mesh.growth={ value = 0.3, tolerance = 0.1 }", stroke + "={value=0.5,tolerance=0.1}",
