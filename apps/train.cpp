@@ -115,6 +115,11 @@ void train(const TrainOptions& options, MPI_Comm comm) {
                      "undula hq on the scene itself, which takes seconds; or a scene of finite elements",
                      scene.file.string() + ", section [model]");
   }
+  if (scene.solid_model != SolidModel::linear) {
+    throw InputError("a reduced model is projected from linear operators of the solid",
+                     "a model.solid with a nonlinear law", "solid = \"linear\"",
+                     scene.file.string() + ", section [model]");
+  }
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
   const SamplingPlan plan = plan_samples(scene.training);

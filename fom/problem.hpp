@@ -39,6 +39,7 @@ struct SolidBody {
   std::string name;
   SimplexMesh<dim> mesh;
   SolidProperties properties;
+  SolidModel model = SolidModel::linear;
   std::function<bool(const Point<dim>&)> imposed; ///< empty: nowhere
   VectorField<dim> imposed_displacement;          ///< cm, empty: zero
   VectorField<dim> body_force;                    ///< dyn/cm^3, empty: zero

@@ -92,6 +92,7 @@ FsiProblem<2> pump_problem(const Scene& scene) {
     if (s == 0) {
       body.name = "membrane";
       body.properties = scene.membrane;
+      body.model = scene.solid_model;
       // Nodes on the clamp line itself are imposed: it is a mesh line, up to rounding.
       const double from = meshes.clamp_radius * (1 - 1e-9);
       body.imposed = [from](const Point<2>& x) { return x[0] >= from; };

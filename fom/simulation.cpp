@@ -36,7 +36,7 @@ double time_step(const Scene& scene) {
 void march(const PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
            const StepCallback& on_step) {
   TimeStepper<2> stepper(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
-                         scene.time.factor_every, timer);
+                         scene.time.factor_every, timer, scene.time.newton);
   const int last_step = scene.time.periods * scene.time.steps_per_period;
   while (state.step < last_step) {
     stepper.advance(state);

@@ -1,6 +1,7 @@
 #include "fom/time_stepper.hpp"
 
 #include <string>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -65,12 +66,14 @@ std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step) {
 
 template <int dim>
 TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators,
-                              TimeScheme scheme, double dt, int factor_every, PhaseTimer& timer)
+                              TimeScheme scheme, double dt, int factor_every, PhaseTimer& timer,
+                              const NewtonSettings& newton)
     : disc_(disc),
       operators_(operators),
       scheme_(scheme),
       dt_(dt),
       timer_(timer),
+      newton_(newton),
       system_(disc, operators, factor_every, timer) {}
 
 template <int dim>
@@ -108,7 +111,15 @@ void TimeStepper<dim>::advance(State& state) {
   system_.assemble({alpha[0] / dt_, dt_ / alpha[0]}, &convecting_);
   Eigen::VectorXd x;
   try {
-    x = system_.solve(rhs, step);
+    if (operators_.has_nonlinear_solid) {
+      x = convecting_;
+      iterations_ = solve_newton<dim>(system_, disc_, operators_,
+                                      {{dt_ / alpha[0], 1.0}, -history_d / alpha[0], state.d[0]}, rhs,
+                                      newton_, step, true, x);
+    } else {
+      x = system_.solve(rhs, step);
+      iterations_ = 1;
+    }
   } catch (const NumericsError& error) {
     throw NumericsError(std::string("time step failed: ") + error.what(),
                         "step " + std::to_string(step) + ", t = " + std::to_string(t) + " s",
@@ -135,6 +146,10 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
                         operators_.damping * x + operators_.stiffness * state.d[0] +
                         convection_of(disc_, operators_, convecting_, x);
   sum_over_ranks(operators_.comm, sum);
+  if (operators_.has_nonlinear_solid) {
+    const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
+    sum += solids.elastic + solids.viscous;
+  }
   return sum - loads_at(disc_, operators_, state.time);
 }
 
@@ -157,6 +172,11 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   terms.damping = sums[2];
   terms.kinetic = sums[3];
   terms.elastic = sums[4];
+  if (operators_.has_nonlinear_solid) {
+    const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
+    terms.elastic += solids.energy;
+    terms.damping += x.dot(solids.viscous);
+  }
   terms.carried = sums[5];
   for (const auto& node : disc_.imposed)
     for (int c = 0; c < dim; ++c) terms.holder += reaction[node.unknown + c] * x[node.unknown + c];
@@ -170,9 +190,51 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   return terms;
 }
 
+namespace {
+
+/// The steady state under the loads and imposed values `rhs`, from `x`, which a failure leaves as it was;
+/// `balanced`: the one under the loads before.
+template <int dim>
+int steady_at_load(LinearSystem<dim>& system, const Discretisation<dim>& disc,
+                   const Operators<dim>& operators, const Eigen::VectorXd& rhs, double tolerance,
+                   int max_iterations, const LoadPath& path, const std::string& place,
+                   const Eigen::VectorXd& balanced, Eigen::VectorXd& x) {
+  const SolidMotion at_rest{{1.0, 0.0}, Eigen::VectorXd::Zero(disc.unknowns()), balanced};
+  Eigen::VectorXd last = x;
+  double change = 0;
+  int solves = 0;
+  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    system.assemble({0.0, 1.0, 0.0}, &last);
+    Eigen::VectorXd next = last;
+    if (operators.has_nonlinear_solid) {
+      try {
+        solves += solve_newton(system, disc, operators, at_rest, rhs, path.newton, iteration, false, next);
+      } catch (const NumericsError& error) {
+        throw NumericsError(std::string("the steady state was not reached: ") + error.what(), place,
+                            "more load steps (LoadPath::load_steps), or more iterations");
+      }
+    } else {
+      next = system.solve(rhs, iteration);
+      ++solves;
+    }
+    change = (next - last).norm() / std::max(next.norm(), 1e-300);
+    last = std::move(next);
+    if (change < tolerance || disc.problem.flow == FlowModel::stokes) {
+      x = std::move(last);
+      return solves;
+    }
+  }
+  throw NumericsError(
+      "the Picard iteration for the steady state did not converge",
+      std::to_string(max_iterations) + " iterations, relative change " + std::to_string(change),
+      "a time-dependent run, or more iterations");
+}
+
+} // namespace
+
 template <int dim>
 int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
-                 int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x) {
+                 int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x, const LoadPath& path) {
   bool elastic = false;
   for (int unknown = disc.fluid_unknowns(); unknown < disc.unknowns(); ++unknown)
     elastic = elastic || !disc.is_constrained[unknown];
@@ -182,38 +244,41 @@ int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operator
                      "imposed solids in a fluid, or solids in vacuo; otherwise a run in time",
                      "FsiProblem::solids");
   LinearSystem<dim> system(disc, operators, 1, timer);
-  Eigen::VectorXd rhs = loads_at(disc, operators, 0.0);
+  Eigen::VectorXd full = loads_at(disc, operators, 0.0);
   for (const auto& constrained : disc.constrained)
-    rhs[constrained.unknown] = imposed_fluid_value(constrained, 0.0);
+    full[constrained.unknown] = imposed_fluid_value(constrained, 0.0);
   for (const auto& node : disc.imposed)
-    rhs.template segment<dim>(node.unknown) = imposed_displacement(disc, node, 0.0);
-  double change = 0;
-  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    system.assemble({0.0, 1.0}, &x);
-    Eigen::VectorXd next = system.solve(rhs, iteration);
-    change = (next - x).norm() / std::max(next.norm(), 1e-300);
-    x = std::move(next);
-    if (change < tolerance || disc.problem.flow == FlowModel::stokes) return iteration;
+    full.template segment<dim>(node.unknown) = imposed_displacement(disc, node, 0.0);
+  const int load_steps = operators.has_nonlinear_solid ? path.load_steps : 1;
+  int solves = 0;
+  Eigen::VectorXd before = x;
+  for (int load = 1; load <= load_steps; ++load) {
+    const Eigen::VectorXd rhs = full * (static_cast<double>(load) / load_steps);
+    Eigen::VectorXd next = x;
+    if (load > 1) next += x - before; // along the path so far
+    solves +=
+        steady_at_load(system, disc, operators, rhs, tolerance, max_iterations, path,
+                       "load step " + std::to_string(load) + " of " + std::to_string(load_steps), x, next);
+    before = std::exchange(x, std::move(next));
   }
-  throw NumericsError(
-      "the Picard iteration for the steady state did not converge",
-      std::to_string(max_iterations) + " iterations, relative change " + std::to_string(change),
-      "a time-dependent run, or more iterations");
+  return solves;
 }
 
 template <int dim>
 Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators<dim>& operators,
                                 const Eigen::VectorXd& x) {
-  Eigen::VectorXd sum = operators.physical * x + operators.stabilisation * x + operators.damping * x +
-                        operators.stiffness * x + convection_of(disc, operators, x, x);
+  Eigen::VectorXd sum = operators.physical * x + operators.stabilisation * x + operators.stiffness * x +
+                        convection_of(disc, operators, x, x);
   sum_over_ranks(operators.comm, sum);
+  if (operators.has_nonlinear_solid)
+    sum += complete_response<dim>(disc, operators, x, Eigen::VectorXd::Zero(x.size()), {}, false).elastic;
   return sum - loads_at(disc, operators, 0.0);
 }
 
 template State initial_state(const Discretisation<2>&);
 template class TimeStepper<2>;
 template int solve_steady(const Discretisation<2>&, const Operators<2>&, double, int, PhaseTimer&,
-                          Eigen::VectorXd&);
+                          Eigen::VectorXd&, const LoadPath&);
 template Eigen::VectorXd steady_residual(const Discretisation<2>&, const Operators<2>&,
                                          const Eigen::VectorXd&);
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "fom/system/linear_system.hpp"
+#include "fom/system/newton.hpp"
 
 namespace undula {
 
@@ -25,7 +25,7 @@ State initial_state(const Discretisation<dim>& disc);
 std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step);
 
 /// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
-///   holder + opening + body = viscous + stabilisation + damping + (mass T x, x) + (stiffness d, x).
+///   holder + opening + body = viscous + stabilisation + damping + (mass T x, x) + (elastic force(d), x).
 struct EnergyTerms {
   double holder = 0;        ///< power of the imposed motion on the solids (reaction times velocity)
   double boundary = 0;      ///< power of imposed fluid velocities
@@ -33,7 +33,7 @@ struct EnergyTerms {
   double body = 0;          ///< power of body forces
   double viscous = 0;       ///< dissipation of the fluid (with the consistent interface terms)
   double stabilisation = 0; ///< dissipation of the penalties
-  double damping = 0;       ///< dissipation of the solids
+  double damping = 0;       ///< dissipation of the solids, Kelvin-Voigt and Rayleigh
   double carried = 0;       ///< kinetic energy carried through openings (static_pressure, traction)
   double kinetic = 0;       ///< energy, erg
   double elastic = 0;       ///< energy, erg
@@ -43,9 +43,10 @@ template <int dim>
 class TimeStepper {
 public:
   TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators, TimeScheme scheme, double dt,
-              int factor_every, PhaseTimer& timer);
+              int factor_every, PhaseTimer& timer, const NewtonSettings& newton = {});
 
-  /// One step. Collective; throws NumericsError on every rank, leaving `state` at the last good step.
+  /// One step; with nonlinear solids by Newton's method from the extrapolated velocities. Collective; throws
+  /// NumericsError on every rank, leaving `state` at the last good step.
   void advance(State& state);
 
   /// Terms of the step that ended in `state` (state.step >= 1).
@@ -56,6 +57,9 @@ public:
   Eigen::VectorXd residual(const State& state) const;
 
   double dt() const { return dt_; }
+
+  /// Linear solves of the last step: Newton's iterations with nonlinear solids, else 1.
+  int iterations() const { return iterations_; }
   LinearSystem<dim>& system() { return system_; }
 
 private:
@@ -66,18 +70,28 @@ private:
   TimeScheme scheme_;
   double dt_;
   PhaseTimer& timer_;
+  NewtonSettings newton_;
+  int iterations_ = 0;
   LinearSystem<dim> system_;
   Eigen::VectorXd older_x_, older_d_; ///< levels n-1 of the last step, for the energy terms
   Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step
 };
 
+/// How a nonlinear solid is brought to its steady state: body forces, pressures and imposed values rise in
+/// `load_steps` equal steps, Newton's method in each starts from the one before.
+struct LoadPath {
+  int load_steps = 1;
+  NewtonSettings newton;
+};
+
 /// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids in vacuo
 /// are at rest under their static loads (their unknowns are displacements here); solids in a fluid have to be
-/// imposed throughout, else InputError. Returns the iterations
-/// taken. Throws NumericsError when `max_iterations` do not suffice.
+/// imposed throughout, else InputError. Returns the linear solves
+/// taken. Throws NumericsError when `max_iterations` (or Newton's of a load step) do not suffice, leaving `x`
+/// at the last load that was reached.
 template <int dim>
 int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
-                 int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x);
+                 int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x, const LoadPath& path = {});
 
 /// TimeStepper::residual for a steady state, at time 0. Collective.
 template <int dim>

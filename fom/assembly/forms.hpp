@@ -41,14 +41,18 @@ template <int dim>
 void add_interface(const Discretisation<dim>& disc, const Share& share, Triplets& consistent,
                    Triplets& penalty);
 
-/// rho_s (v, w) of all solids.
 template <int dim>
-void add_solid_mass(const Discretisation<dim>& disc, const Share& share, Triplets& out);
+using SolidFactor = std::function<double(const SolidBody<dim>&)>;
 
-/// (C eps(d), eps(w)), isotropic linear elasticity; every solid times factor(properties).
+/// rho_s (v, w); every solid times factor(solid), solids with factor 0 left out.
 template <int dim>
-void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share,
-                         const std::function<double(const SolidProperties&)>& factor, Triplets& out);
+void add_solid_mass(const Discretisation<dim>& disc, const Share& share, const SolidFactor<dim>& factor,
+                    Triplets& out);
+
+/// (C eps(d), eps(w)), isotropic linear elasticity; every solid times factor(solid).
+template <int dim>
+void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share, const SolidFactor<dim>& factor,
+                         Triplets& out);
 
 /// Skew convection rho/2 [((b.grad) u, v) - ((b.grad) v, u)] of one part for the scalar basis: entry (i, j)
 /// couples test vertex i and trial vertex j of every velocity component. `b` holds the vertices' convecting

@@ -32,11 +32,15 @@ void for_each_solid_point(const Discretisation<dim>& disc, const Share& share, F
 } // namespace
 
 template <int dim>
-void add_solid_mass(const Discretisation<dim>& disc, const Share& share, Triplets& out) {
+void add_solid_mass(const Discretisation<dim>& disc, const Share& share, const SolidFactor<dim>& factor,
+                    Triplets& out) {
   for_each_solid_point(
       disc, share, [&](int solid, int, const auto& nodes, const auto& lambda, const Point<dim>&, double w) {
+        const auto& body = disc.problem.solids[solid];
+        const double times = factor(body);
+        if (times == 0) return;
         const auto shape = quadratic_values<dim>(lambda);
-        const double density = disc.problem.solids[solid].properties.density;
+        const double density = times * body.properties.density;
         for (std::size_t i = 0; i < nodes.size(); ++i)
           for (std::size_t j = 0; j < nodes.size(); ++j)
             for (int c = 0; c < dim; ++c)
@@ -46,15 +50,15 @@ void add_solid_mass(const Discretisation<dim>& disc, const Share& share, Triplet
 }
 
 template <int dim>
-void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share,
-                         const std::function<double(const SolidProperties&)>& factor, Triplets& out) {
+void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share, const SolidFactor<dim>& factor,
+                         Triplets& out) {
   const bool hoop = disc.problem.space == Space::axisymmetric;
   for_each_solid_point(
       disc, share,
       [&](int solid, int cell, const auto& nodes, const auto& lambda, const Point<dim>& x, double w) {
         const auto& body = disc.problem.solids[solid];
         const double young = body.properties.young, poisson = body.properties.poisson;
-        const double scale = w * factor(body.properties);
+        const double scale = w * factor(body);
         const double lame = scale * young * poisson / ((1 + poisson) * (1 - 2 * poisson));
         const double shear = scale * young / (2 * (1 + poisson));
         const auto shape = quadratic_values<dim>(lambda);
@@ -76,8 +80,7 @@ void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share,
       });
 }
 
-template void add_solid_mass(const Discretisation<2>&, const Share&, Triplets&);
-template void add_solid_stiffness(const Discretisation<2>&, const Share&,
-                                  const std::function<double(const SolidProperties&)>&, Triplets&);
+template void add_solid_mass(const Discretisation<2>&, const Share&, const SolidFactor<2>&, Triplets&);
+template void add_solid_stiffness(const Discretisation<2>&, const Share&, const SolidFactor<2>&, Triplets&);
 
 } // namespace undula

@@ -16,7 +16,9 @@ enum class Coupling {
 };
 enum class SolidModel {
   linear,
-  von_karman, ///< of a plate: stretching by moderate slopes (thin gap)
+  von_karman,             ///< of a plate: stretching by moderate slopes (thin gap)
+  saint_venant_kirchhoff, ///< the linear law in the Green-Lagrange strain: large rotations, small strains
+  neo_hookean,            ///< compressible; large strains
 };
 enum class Interface { no_slip };
 enum class FlowModel { stokes, navier_stokes };
@@ -49,6 +51,11 @@ struct SolidProperties {
   double young = 0;        ///< dyn/cm^2
   double poisson = 0;      ///< -
   double damping_time = 0; ///< Kelvin-Voigt: stress = C (strain + damping_time * strain rate), s
+  /// Rayleigh: force = mass_damping * mass * velocity + stiffness_damping * (stiffness at rest) * velocity.
+  /// For the linear law the second is Kelvin-Voigt itself; for the others it resists rigid rotation, which
+  /// Kelvin-Voigt by the rate of the Green-Lagrange strain does not.
+  double mass_damping = 0;      ///< 1/s
+  double stiffness_damping = 0; ///< s
 };
 
 struct OperatingPoint {
@@ -65,12 +72,19 @@ struct MeshSizes {
   double growth = 0;        ///< increase of element size per unit distance from a gap, -
 };
 
+/// Newton's method for solids with a nonlinear law.
+struct NewtonSettings {
+  double tolerance = 1e-8; ///< of the balance of forces on the solids, relative to their internal forces
+  int max_iterations = 20;
+};
+
 struct TimeSettings {
   TimeScheme scheme = TimeScheme::bdf2;
   int steps_per_period = 0;
   int periods = 0;
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
   int factor_every = 1;    ///< steps that share one factorisation; the rest is left to GMRES
+  NewtonSettings newton;
 };
 
 /// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them

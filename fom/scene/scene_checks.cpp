@@ -37,6 +37,23 @@ void check_clamp(const Scene& scene, const std::string& where) {
   }
 }
 
+/// Stiffness-proportional damping is stated once, and the plate of the thin gaps knows Kelvin-Voigt only.
+void check_damping(const Scene& scene, const std::string& where) {
+  const SolidProperties& solid = scene.membrane;
+  const std::string seen = "damping_time_s = " + shortest_number(solid.damping_time) +
+                           ", mass_damping_per_s = " + shortest_number(solid.mass_damping) +
+                           ", stiffness_damping_s = " + shortest_number(solid.stiffness_damping);
+  if (solid.damping_time > 0 && solid.stiffness_damping > 0) {
+    throw InputError("damping in proportion to the stiffness is stated twice", seen,
+                     "\"damping_time_s\" (Kelvin-Voigt) or \"stiffness_damping_s\" (Rayleigh), the other 0",
+                     where + ", section [membrane]");
+  }
+  if (scene.space == Space::thin_gap && (solid.mass_damping > 0 || solid.stiffness_damping > 0)) {
+    throw InputError("thin gaps know no Rayleigh damping", seen,
+                     "\"damping_time_s\" alone, or space = \"axisymmetric\"", where + ", section [membrane]");
+  }
+}
+
 void check_levels(const Scene& scene, const std::string& where) {
   const bool thin_gap = scene.space == Space::thin_gap;
   if (thin_gap != (scene.coupling == Coupling::implicit)) {
@@ -49,6 +66,13 @@ void check_levels(const Scene& scene, const std::string& where) {
   if (!thin_gap && scene.solid_model == SolidModel::von_karman) {
     throw InputError("the solid does not go with the space", "solid = \"von-karman\"",
                      "solid = \"linear\", or space = \"thin-gap\"", where + ", section [model]");
+  }
+  if (thin_gap && scene.solid_model != SolidModel::linear && scene.solid_model != SolidModel::von_karman) {
+    throw InputError("the solid does not go with the space",
+                     scene.solid_model == SolidModel::neo_hookean ? "solid = \"neo-hookean\""
+                                                                  : "solid = \"saint-venant-kirchhoff\"",
+                     "solid = \"von-karman\" or \"linear\" in thin gaps, whose membrane is a plate",
+                     where + ", section [model]");
   }
   if (thin_gap && scene.profile.empty()) {
     throw InputError("thin gaps need a profile", "meshes in its place", "\"geometry.profile\"",
@@ -98,6 +122,7 @@ void check_consistency(const Scene& scene, const std::string& where) {
   check_geometry(scene, where);
   check_clamp(scene, where);
   check_levels(scene, where);
+  check_damping(scene, where);
   check_time(scene, where);
   check_training(scene, where);
 }

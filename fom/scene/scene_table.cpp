@@ -55,11 +55,16 @@ std::vector<SceneKey> model_keys() {
        choice<FIELD(coupling)>({name("fixed", Coupling::fixed), name("implicit", Coupling::implicit)},
                                {"mapped", "explicit"}, "fixed")},
       {"model.solid", "",
-       "constitutive law of the membrane; `von-karman`: plate stretched by its slopes (thin gap only)",
+       "constitutive law of the membrane; `saint-venant-kirchhoff`: large rotations, small strains; "
+       "`neo-hookean`: large strains, mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2; `von-karman`: plate "
+       "stretched "
+       "by its slopes (thin gap only)",
        shapes_state,
        choice<FIELD(solid_model)>(
-           {name("linear", SolidModel::linear), name("von-karman", SolidModel::von_karman)},
-           {"saint-venant-kirchhoff", "neo-hookean"}, "linear")},
+           {name("linear", SolidModel::linear),
+            name("saint-venant-kirchhoff", SolidModel::saint_venant_kirchhoff),
+            name("neo-hookean", SolidModel::neo_hookean), name("von-karman", SolidModel::von_karman)},
+           {}, "linear")},
       {"model.interface", "", "condition between fluid and solid", shapes_state,
        choice<FIELD(interface)>({name("no-slip", Interface::no_slip)}, {"slip"}, "no-slip")},
       {"model.flow", "", "flow equations; `stokes` leaves convection out", shapes_state,
@@ -106,6 +111,12 @@ std::vector<SceneKey> physics_keys() {
        "Kelvin-Voigt damping: stress = C (strain + damping time * strain rate); loss factor 2 pi f * damping "
        "time",
        shapes_state, RealKey{FIELD(membrane.damping_time), 1, from_to(0, 1), {}}},
+      {"membrane.mass_damping_per_s", "per_s", "Rayleigh damping: force = this * mass * velocity",
+       shapes_state, RealKey{FIELD(membrane.mass_damping), 1, from_to(0, 1e6), 0.0}},
+      {"membrane.stiffness_damping_s", "s",
+       "Rayleigh damping: force = this * (stiffness at rest) * velocity; for the linear solid the same as "
+       "`damping_time_s`, so that one of the two has to be 0",
+       shapes_state, RealKey{FIELD(membrane.stiffness_damping), 1, from_to(0, 1), 0.0}},
       {"membrane.clamp_radius_mm", "mm",
        "the motion of the membrane is imposed from this radius outwards; 0: the radius in the profile",
        shapes_state, RealKey{FIELD(clamp_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
@@ -143,6 +154,11 @@ std::vector<SceneKey> numerics_keys() {
        RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}},
       {"time.factor_every", "", "steps that share one factorisation; GMRES corrects the rest", shapes_state,
        IntegerKey{FIELD(time.factor_every), 1, 1000, 1}},
+      {"time.newton_tolerance", "",
+       "nonlinear solids: balance of forces at which Newton ends, relative to the internal forces",
+       shapes_state, RealKey{FIELD(time.newton.tolerance), 1, between(0, 1), NewtonSettings{}.tolerance}},
+      {"time.newton_iterations", "", "nonlinear solids: iterations of Newton after which a step has failed",
+       shapes_state, IntegerKey{FIELD(time.newton.max_iterations), 1, 1000, NewtonSettings{}.max_iterations}},
       {"output.fields_every", "", "steps between field files; 0: none", leaves_state,
        IntegerKey{FIELD(output.fields_every), 0, many, 0}},
       {"output.checkpoint_every", "", "steps between checkpoints; 0: none", leaves_state,

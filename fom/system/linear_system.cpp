@@ -14,7 +14,7 @@ namespace {
 template <int dim>
 SparseMatrix constant_part(const Operators<dim>& operators, const SystemFactors& factors) {
   SparseMatrix sum = operators.physical + operators.stabilisation;
-  sum = sum + operators.damping;
+  sum = sum + factors.damping * operators.damping;
   sum = sum + factors.mass * operators.mass;
   sum = sum + factors.stiffness * operators.stiffness;
   return sum;
@@ -52,6 +52,12 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
   if (disc.problem.flow == FlowModel::navier_stokes)
     visit_convection(disc, operators, zero, [&](int row, int column, double) { add(row, column); });
+  tangents_begin_ = rows.size();
+  for (const auto& cell : operators.nonlinear_cells) {
+    const auto unknowns = cell_unknowns(disc, cell);
+    for (const int column : unknowns)
+      for (const int row : unknowns) add(row, column);
+  }
   values_.assign(rows.size(), 0.0);
 
   check_petsc(MatCreate(operators.comm, matrix_.out()), "creating the system matrix");
@@ -63,9 +69,10 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(MatCreateVecs(matrix_.get(), solution_.out(), rhs_.out()), "creating vectors");
   check_petsc(VecScatterCreateToAll(solution_.get(), gather_.out(), gathered_.out()), "creating the gather");
 
+  const bool corrects = factor_every > 1 || operators.has_nonlinear_solid;
   check_petsc(KSPCreate(operators.comm, solver_.out()), "creating the solver");
   check_petsc(KSPSetOptionsPrefix(solver_.get(), "fsi_"), "naming the solver");
-  check_petsc(KSPSetType(solver_.get(), factor_every > 1 ? KSPGMRES : KSPPREONLY), "choosing the solver");
+  check_petsc(KSPSetType(solver_.get(), corrects ? KSPGMRES : KSPPREONLY), "choosing the solver");
   check_petsc(KSPSetTolerances(solver_.get(), 1e-11, 1e-300, 1e10, 200), "setting tolerances");
   PC preconditioner = nullptr;
   check_petsc(KSPGetPC(solver_.get(), &preconditioner), "getting the preconditioner");
@@ -89,15 +96,24 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
     factored_at_ = -1;
   }
   std::size_t next = constant_entries_;
-  if (b && values_.size() > constant_entries_)
+  if (b && tangents_begin_ > constant_entries_)
     visit_convection(disc_, operators_, *b, [&](int, int, double value) { values_[next++] = value; });
-  else
-    std::fill(values_.begin() + static_cast<std::ptrdiff_t>(constant_entries_), values_.end(), 0.0);
+  std::fill(values_.begin() + static_cast<std::ptrdiff_t>(next), values_.end(), 0.0);
   check_petsc(MatSetValuesCOO(matrix_.get(), values_.data(), INSERT_VALUES), "filling the system matrix");
 }
 
 template <int dim>
-Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
+void LinearSystem<dim>::replace_tangents(
+    const std::vector<typename CellResponse<dim>::Derivatives>& tangents) {
+  const auto scope = timer_.measure("assemble");
+  auto value = values_.begin() + static_cast<std::ptrdiff_t>(tangents_begin_);
+  for (const auto& tangent : tangents)
+    value = std::copy(tangent.data(), tangent.data() + tangent.size(), value);
+  check_petsc(MatSetValuesCOO(matrix_.get(), values_.data(), INSERT_VALUES), "filling the system matrix");
+}
+
+template <int dim>
+Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, int iteration) {
   const auto& index = operators_.ownership.petsc_index;
   const int first = operators_.ownership.first[operators_.rank];
   {
@@ -108,9 +124,10 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
         values[index[unknown] - first] = rhs[unknown];
     check_petsc(VecRestoreArray(rhs_.get(), &values), "writing the right-hand side");
   }
+  bool reuse = false;
   {
     const auto scope = timer_.measure("factor");
-    const bool reuse = factored_at_ >= 0 && (step - 1) % factor_every_ != 0;
+    reuse = factored_at_ >= 0 && (iteration > 1 || (step - 1) % factor_every_ != 0);
     check_petsc(KSPSetReusePreconditioner(solver_.get(), reuse ? PETSC_TRUE : PETSC_FALSE),
                 "reusing the factors");
     // Without new operators KSPSetUp would leave the factorisation to KSPSolve, and its time to phase
@@ -123,6 +140,13 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step) {
   check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
+  if (reason < 0 && reuse && iteration > 1) {
+    // The solids have moved too far from where the factors were made.
+    check_petsc(KSPSetReusePreconditioner(solver_.get(), PETSC_FALSE), "factoring anew");
+    check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
+    check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
+    check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
+  }
   check_petsc(
       VecScatterBegin(gather_.get(), solution_.get(), gathered_.get(), INSERT_VALUES, SCATTER_FORWARD),
       "gathering");

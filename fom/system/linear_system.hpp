@@ -9,10 +9,11 @@
 namespace undula {
 
 /// Factors of the operators in the system matrix
-///   mass_factor * mass + physical + stabilisation + damping + stiffness_factor * stiffness + convection(b).
+///   mass * mass + physical + stabilisation + damping * damping + stiffness * stiffness + convection(b).
 struct SystemFactors {
   double mass = 0;
   double stiffness = 0;
+  double damping = 1; ///< 0 at rest, where the unknowns of solids are displacements
   bool operator==(const SystemFactors&) const = default;
 };
 
@@ -22,18 +23,23 @@ template <int dim>
 class LinearSystem {
 public:
   /// Collective. `factor_every` > 1 keeps a numerical factorisation for that many steps and corrects by
-  /// GMRES.
+  /// GMRES. So do Newton's iterations of one step.
   LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators, int factor_every,
                PhaseTimer& timer);
 
-  /// Sets the values for convecting field `b` (null: no convection). Phase "assemble". Collective.
+  /// Sets the values for convecting field `b` (null: no convection). Tangents of nonlinear solids are zero.
+  /// Phase "assemble". Collective.
   void assemble(const SystemFactors& factors, const Eigen::VectorXd* b);
+
+  /// Replaces the tangents of the share's nonlinear cells and nothing else. Phase "assemble". Collective.
+  void replace_tangents(const std::vector<typename CellResponse<dim>::Derivatives>& tangents);
 
   /// Solves with the natural-order right-hand side (complete on every rank), solution complete on every rank.
   /// Phases "factor" and "solve". Throws NumericsError on every rank if the solver fails or x is not finite.
   /// `step` decides when to factor anew: the first step after a multiple of factor_every does, so that a
-  /// restart from a state at such a multiple repeats the run.
-  Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step);
+  /// restart from a state at such a multiple repeats the run. From Newton's second `iteration` of a step on
+  /// the factors stay as long as GMRES gets on with them.
+  Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step, int iteration = 1);
 
   Mat matrix() const { return matrix_.get(); }
 
@@ -43,8 +49,8 @@ private:
   PhaseTimer& timer_;
   int factor_every_;
   int factored_at_ = -1;
-  std::vector<double> values_; ///< constant entries, then convection entries
-  std::size_t constant_entries_ = 0;
+  std::vector<double> values_; ///< constant entries, then convection entries, then tangents
+  std::size_t constant_entries_ = 0, tangents_begin_ = 0;
   SparseMatrix constant_; ///< for the current factors
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;

@@ -38,14 +38,25 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   const int size = disc.unknowns();
   Triplets mass, physical, stabilisation, damping, stiffness;
   add_fluid_mass(disc, operators.moments, mass);
-  add_solid_mass(disc, share, mass);
+  using Body = SolidBody<dim>;
+  const SolidFactor<dim> everywhere = [](const Body&) { return 1.0; };
+  add_solid_mass<dim>(disc, share, everywhere, mass);
   add_fluid_viscosity_and_pressure(disc, share, physical);
   add_fluid_stabilisation(disc, share, stabilisation);
   add_interface(disc, share, physical, stabilisation);
-  add_solid_stiffness(
-      disc, share, [](const SolidProperties& solid) { return solid.damping_time; }, damping);
-  add_solid_stiffness(
-      disc, share, [](const SolidProperties&) { return 1.0; }, stiffness);
+  add_solid_mass<dim>(
+      disc, share, [](const Body& body) { return body.properties.mass_damping; }, damping);
+  add_solid_stiffness<dim>(
+      disc, share,
+      [](const Body& body) {
+        const auto& solid = body.properties;
+        return solid.stiffness_damping + (is_nonlinear(body.model) ? 0.0 : solid.damping_time);
+      },
+      damping);
+  add_solid_stiffness<dim>(
+      disc, share, [](const Body& body) { return is_nonlinear(body.model) ? 0.0 : 1.0; }, stiffness);
+  operators.has_nonlinear_solid = has_nonlinear_solid(disc);
+  operators.nonlinear_cells = nonlinear_cells(disc, share);
   operators.mass = compress(size, mass);
   operators.physical = compress(size, physical);
   operators.stabilisation = compress(size, stabilisation);

@@ -7,12 +7,13 @@
 #include <string>
 
 #include "base/phase_timer.hpp"
-#include "fom/assembly/forms.hpp"
+#include "fom/assembly/nonlinear_solid.hpp"
 
 namespace undula {
 
 /// With x the unknowns (fluid velocity and pressure, solid velocity) and d the solid displacement,
-///   mass x' + (physical + stabilisation + damping) x + stiffness d + convection(x) x = loads.
+///   mass x' + (physical + stabilisation + damping) x + stiffness d + f(d, x) + convection(x) x = loads,
+/// f the internal forces of solids with a nonlinear law (assembly/nonlinear_solid.hpp).
 /// Matrices are this rank's share in natural numbering; functionals are complete on every rank.
 template <int dim>
 struct Operators {
@@ -22,8 +23,10 @@ struct Operators {
   SparseMatrix mass;
   SparseMatrix physical;      ///< viscosity, pressure, divergence, consistent interface terms
   SparseMatrix stabilisation; ///< interior penalty, ghost penalty, Nitsche penalty
-  SparseMatrix damping;       ///< Kelvin-Voigt: damping_time * stiffness
-  SparseMatrix stiffness;
+  SparseMatrix damping;       ///< Kelvin-Voigt of linear solids (damping_time * stiffness), Rayleigh of all
+  SparseMatrix stiffness;     ///< of linear solids; zeros for the others
+  bool has_nonlinear_solid = false;       ///< on any rank
+  std::vector<SolidCell> nonlinear_cells; ///< of the share
   PartMoments<dim> moments;
   std::vector<int> own_parts;                                 ///< parts of the share
   std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part

@@ -107,6 +107,17 @@ TEST(BadInput, ImpossibleOperatingPointsAreRefused) {
   }
 }
 
+TEST(BadInput, ReducedModelsAreNotMadeOfNonlinearSolids) {
+  const ScratchFolder folder;
+  for (const char* solid : {"neo-hookean", "saint-venant-kirchhoff"}) {
+    expect_one_refusal(run_undula({"train", UNDULA_SOURCE_DIR "/data/scenes/wave_pump_fixed_training.toml",
+                                   "--set", std::string("model.solid=") + solid},
+                                  folder.path()),
+                       {"linear operators", "[model]"});
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  }
+}
+
 TEST(BadInput, PicturesHaveToBePngInAnExistingFolder) {
   const ScratchFolder folder;
   const std::string model = write_small_model(folder.path()).string();

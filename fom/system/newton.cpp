@@ -1,0 +1,99 @@
+#include "fom/system/newton.hpp"
+
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace undula {
+
+namespace {
+
+std::string scientific(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
+}
+
+[[noreturn]] void give_up(const std::string& what, int iteration, double error) {
+  throw NumericsError("Newton's method for the solids failed: " + what,
+                      "iteration " + std::to_string(iteration) + ", forces out of balance by " +
+                          scientific(error) + " of the internal forces",
+                      "a smaller load or time step, or a better-shaped solid mesh");
+}
+
+} // namespace
+
+template <int dim>
+SolidResponse<dim> complete_response(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                                     const Eigen::VectorXd& d, const Eigen::VectorXd& v,
+                                     const SolidRates& rates, bool derive, const Eigen::VectorXd* before) {
+  auto response = solid_response(disc, operators.nonlinear_cells, d, v, rates, derive, before);
+  sum_over_ranks(operators.comm, response.elastic);
+  sum_over_ranks(operators.comm, response.viscous);
+  Eigen::VectorXd energy = Eigen::VectorXd::Constant(1, response.energy);
+  sum_over_ranks(operators.comm, energy);
+  response.energy = energy[0];
+  MPI_Allreduce(MPI_IN_PLACE, &response.smallest_volume_ratio, 1, MPI_DOUBLE, MPI_MIN, operators.comm);
+  return response;
+}
+
+template <int dim>
+int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, const Operators<dim>& operators,
+                 const SolidMotion& motion, const Eigen::VectorXd& rhs, const NewtonSettings& settings,
+                 int step, bool keep_factors, Eigen::VectorXd& x) {
+  const auto& cells = operators.nonlinear_cells;
+  // Only the unknowns of solids enter, and only balances that are asked for count.
+  const auto free = [&](Eigen::VectorXd values) {
+    for (int unknown = 0; unknown < disc.unknowns(); ++unknown)
+      if (disc.is_constrained[unknown]) values[unknown] = 0;
+    return values;
+  };
+  const auto displacement = [&](const Eigen::VectorXd& y) -> Eigen::VectorXd {
+    return motion.rates.d * y + motion.offset;
+  };
+  Eigen::VectorXd before = motion.balanced;
+  const auto respond = [&](const Eigen::VectorXd& y, bool derive) {
+    return complete_response<dim>(disc, operators, displacement(y), motion.rates.v * y, motion.rates, derive,
+                                  &before);
+  };
+  const auto product = [&](const SolidResponse<dim>& response, const Eigen::VectorXd& y, bool absolute) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(disc.unknowns());
+    add_tangent_product(disc, cells, response, y, absolute, sum);
+    sum_over_ranks(operators.comm, sum);
+    return sum;
+  };
+
+  double error = std::numeric_limits<double>::infinity();
+  for (int iteration = 1; iteration <= settings.max_iterations; ++iteration) {
+    const auto here = respond(x, true);
+    const Eigen::VectorXd force = here.elastic + here.viscous;
+    if (!force.allFinite()) give_up("the law is not finite, an element is inside out", iteration, error);
+    system.replace_tangents(here.tangents);
+    Eigen::VectorXd next =
+        system.solve(rhs + free(product(here, x, false) - force), step, keep_factors ? iteration : 1);
+    const Eigen::VectorXd linear = force + product(here, next - x, false);
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() *
+                            product(here, displacement(next), true).norm() / motion.rates.d;
+    before = displacement(x);
+    x = std::move(next);
+    const auto there = respond(x, false);
+    const Eigen::VectorXd exact = there.elastic + there.viscous;
+    if (!exact.allFinite()) give_up("the law is not finite, an element is inside out", iteration, error);
+    const double left = free(exact - linear).norm();
+    error = left / std::max(exact.norm(), std::numeric_limits<double>::min());
+    if (left > settings.tolerance * exact.norm() + rounding) continue;
+    if (there.smallest_volume_ratio <= 0) give_up("an element is inside out", iteration, error);
+    return iteration;
+  }
+  give_up("no convergence", settings.max_iterations, error);
+}
+
+template SolidResponse<2> complete_response(const Discretisation<2>&, const Operators<2>&,
+                                            const Eigen::VectorXd&, const Eigen::VectorXd&, const SolidRates&,
+                                            bool, const Eigen::VectorXd*);
+template int solve_newton(LinearSystem<2>&, const Discretisation<2>&, const Operators<2>&, const SolidMotion&,
+                          const Eigen::VectorXd&, const NewtonSettings&, int, bool, Eigen::VectorXd&);
+
+} // namespace undula
