@@ -120,6 +120,12 @@ void train(const TrainOptions& options, MPI_Comm comm) {
                      "a model.solid with a nonlinear law", "solid = \"linear\"",
                      scene.file.string() + ", section [model]");
   }
+  if (scene.operating_point.stroke_scale != 1) {
+    throw InputError("a campaign states the stroke that the holder makes",
+                     "operating_point.stroke_scale = " + shortest(scene.operating_point.stroke_scale),
+                     "1; ask the reduced model for the scaled stroke instead",
+                     scene.file.string() + ", section [operating_point]");
+  }
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
   const SamplingPlan plan = plan_samples(scene.training);

@@ -118,6 +118,15 @@ TEST(BadInput, ReducedModelsAreNotMadeOfNonlinearSolids) {
   }
 }
 
+TEST(BadInput, CampaignsDoNotScaleTheStroke) {
+  const ScratchFolder folder;
+  expect_one_refusal(run_undula({"train", UNDULA_SOURCE_DIR "/data/scenes/wave_pump_fixed_training.toml",
+                                 "--set", "operating_point.stroke_scale=1.1"},
+                                folder.path()),
+                     {"stroke_scale = 1.1", "[operating_point]"});
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(BadInput, PicturesHaveToBePngInAnExistingFolder) {
   const ScratchFolder folder;
   const std::string model = write_small_model(folder.path()).string();
