@@ -143,7 +143,8 @@ TEST(FluidCylinder, CoarseVortexStreet) {
   EXPECT_GT(street.lift_max, 0.7); // shed, not decayed
 }
 
-/// Finer mesh, lighter stabilisation. Takes many minutes: run it by name with --gtest_also_run_disabled_tests.
+/// Finer mesh, lighter stabilisation. Takes many minutes: run it by name with
+/// --gtest_also_run_disabled_tests.
 TEST(FluidCylinder, DISABLED_VortexStreet) {
   auto weights = default_weights(1.0, 0.1);
   weights.velocity_jump = weights.divergence = 0.01;
