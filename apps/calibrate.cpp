@@ -160,6 +160,7 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
   // 3. The scene and the numbers; the picture beside them.
   on_root(comm, [&] {
     Scene calibrated = with_values(scene, keys, calibration.optimum);
+    calibrated.name = std::filesystem::path(options.output).stem().string();
     for (const FreeKey& key : keys) {
       narrow_tolerance(calibrated, key.key);
     }
