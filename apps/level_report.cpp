@@ -7,16 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/gnuplot.hpp"
+#include "apps/hq_report.hpp"
 #include "apps/text_table.hpp"
 
 namespace undula {
 namespace {
 
 std::string number(double value, int digits) { return std::isfinite(value) ? decimals(value, digits) : "-"; }
-
-nlohmann::ordered_json or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
 
 CurveDifference to_reference(const LevelReport& report, const LevelResult& result) {
   if (result.reference < 0) {
@@ -75,7 +72,7 @@ std::string level_report_json(const LevelReport& report) {
     const CurveDifference data = curve_difference(result.flow, report.measured);
     nlohmann::ordered_json flow = nlohmann::ordered_json::array();
     for (const double q : result.flow) {
-      flow.push_back(or_null(q));
+      flow.push_back(finite_or_null(q));
     }
     json["levels"].push_back(
         {{"level", result.level},
@@ -83,9 +80,9 @@ std::string level_report_json(const LevelReport& report) {
          {"unknowns", result.unknowns},
          {"seconds_per_point", result.seconds_per_point},
          {"flow_l_per_min", flow},
-         {"rms_to_data_l_per_min", or_null(data.rms)},
-         {"largest_to_data_l_per_min", or_null(data.largest)},
-         {"rms_to_reference_l_per_min", or_null(to_reference(report, result).rms)},
+         {"rms_to_data_l_per_min", finite_or_null(data.rms)},
+         {"largest_to_data_l_per_min", finite_or_null(data.largest)},
+         {"rms_to_reference_l_per_min", finite_or_null(to_reference(report, result).rms)},
          {"reference",
           result.reference < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(result.reference)}});
   }

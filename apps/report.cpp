@@ -14,6 +14,7 @@
 #include "apps/commands.hpp"
 #include "apps/gnuplot.hpp"
 #include "apps/head_list.hpp"
+#include "apps/hq_report.hpp"
 #include "apps/level_report.hpp"
 #include "apps/measured_curve.hpp"
 #include "apps/mpi_session.hpp"
@@ -110,8 +111,8 @@ LevelResult compute_model(const ReportOptions& options, const std::string& file,
 /// Flows at `heads` by linear interpolation between the recorded ones; NaN outside of them.
 LevelResult read_runs(const ReportOptions& options, const std::string& file, std::span<const double> heads) {
   const SceneCurve curve = read_scene_curve(file);
-  if (std::abs(curve.frequency_Hz - options.frequency_Hz) > 1e-6 * options.frequency_Hz ||
-      std::abs(curve.stroke_mm - options.stroke_mm) > 1e-6 * options.stroke_mm) {
+  if (!same_setting(curve.frequency_Hz, options.frequency_Hz) ||
+      !same_setting(curve.stroke_mm, options.stroke_mm)) {
     throw InputError("recorded runs belong to another operating point",
                      shortest(curve.frequency_Hz) + " Hz, " + shortest(curve.stroke_mm) + " mm",
                      shortest(options.frequency_Hz) + " Hz, " + shortest(options.stroke_mm) + " mm", file);

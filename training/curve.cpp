@@ -84,9 +84,7 @@ RunRecord settle(const ThinGapModel& model, const Scene& scene, State& state) {
     record.state = RunState::failed;
     record.reason = error.what();
   }
-  record.cycles = summarise_cycles(series, scene.time.steps_per_period);
-  for (const auto& [phase, entry] : timer.records()) record.seconds[phase] = entry.seconds;
-  record.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  complete_record(record, series, scene.time.steps_per_period, timer, begin);
   return record;
 }
 

@@ -121,6 +121,13 @@ Eigen::VectorXd extrapolation_weights(const Eigen::MatrixXd& differences) {
   return weights;
 }
 
+void complete_record(RunRecord& record, const TimeSeries& series, int steps_per_period,
+                     const PhaseTimer& timer, std::chrono::steady_clock::time_point begin) {
+  record.cycles = summarise_cycles(series, steps_per_period);
+  for (const auto& [phase, entry] : timer.records()) record.seconds[phase] = entry.seconds;
+  record.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
   const auto begin = std::chrono::steady_clock::now();
   const auto& disc = prepared.disc;
@@ -226,10 +233,8 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
     record.state = RunState::failed;
     record.reason = error.what();
   }
-  record.cycles = summarise_cycles(series, scene.time.steps_per_period);
   sampler.write(disc, record);
-  for (const auto& [phase, entry] : timer.records()) record.seconds[phase] = entry.seconds;
-  record.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  complete_record(record, series, scene.time.steps_per_period, timer, begin);
   return record;
 }
 

@@ -1,6 +1,8 @@
 // One full-order run of a campaign: marched until it repeats from period to period, helped by extrapolation.
 #pragma once
 
+#include <chrono>
+
 #include "fom/simulation.hpp"
 #include "training/campaign_store.hpp"
 
@@ -20,6 +22,11 @@ Eigen::VectorXd extrapolation_weights(const Eigen::MatrixXd& differences);
 /// NumericsError ends in a record of state `failed`. Collective over the communicator of `prepared`; the
 /// record is complete on every rank.
 RunRecord periodic_run(PreparedScene& prepared, const Scene& scene);
+
+/// What every run leaves in its record at its end: the cycle means of its series, wall seconds by phase and
+/// in total since `begin`.
+void complete_record(RunRecord& record, const TimeSeries& series, int steps_per_period,
+                     const PhaseTimer& timer, std::chrono::steady_clock::time_point begin);
 
 /// Places of a field in the natural order of unknowns; the rows of its snapshots.
 std::vector<int> velocity_unknowns(const Discretisation<2>& disc);

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "geometry/passage_flow.hpp"
+#include "geometry/profile_scale.hpp"
 #include "geometry/wall_ray.hpp"
 
 namespace undula {
@@ -189,22 +190,13 @@ ThinGapLayout thin_gap_layout(const PumpProfile& profile, const SimplexMesh<2>& 
   // 4. The holder, and the gap past the rim.
   const double chamber_from = face_radius(layout, layout.channel);
   layout.holder_area = pi * (membrane.outer_radius * membrane.outer_radius - chamber_from * chamber_from);
-  const auto& housing = profile.housing.points;
-  double wall_radius = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < housing.size(); ++i) {
-    const Point<2>&a = housing[i - 1], &b = housing[i];
-    const double z = membrane.mid_plane;
-    if (a.y() == b.y() || z < std::min(a.y(), b.y()) || z > std::max(a.y(), b.y())) continue;
-    const double r = a.x() + (z - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    if (r > membrane.outer_radius) wall_radius = std::min(wall_radius, r);
-  }
-  if (!std::isfinite(wall_radius))
+  const double past_rim = rim_gap(profile);
+  if (!std::isfinite(past_rim))
     refuse("no wall surrounds the rim of the membrane", membrane.outer_radius,
            "a housing outside of it at its height");
-  const double rim_gap = wall_radius - membrane.outer_radius;
-  layout.rim.area = pi * (wall_radius * wall_radius - membrane.outer_radius * membrane.outer_radius);
+  layout.rim.area = pi * past_rim * (2 * membrane.outer_radius + past_rim);
   layout.rim.inertance = layout.thickness.back() / layout.rim.area;
-  layout.rim.resistance = developed_friction(rim_gap) * layout.rim.inertance;
+  layout.rim.resistance = developed_friction(past_rim) * layout.rim.inertance;
 
   // 5. The channels. Friction is that between walls that face each other; across the open bores it is small.
   const auto friction = [&](const Point<2>& x) {

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -28,7 +29,7 @@ constexpr int max_parts = 64;            // of a step
 /// have in a flow driven by the holder at this frequency).
 class RelativeChange {
 public:
-  RelativeChange(const ThinGapStep& step) : step_(step) {
+  explicit RelativeChange(const ThinGapStep& step) {
     const auto& point = step.scene->operating_point;
     const double speed =
         2 * std::numbers::pi * point.frequency * std::max(point.stroke * point.stroke_scale, least_stroke);
@@ -53,7 +54,6 @@ public:
 
 private:
   static constexpr double least_stroke = 1e-3; // cm; only a scale, for pumps at rest
-  const ThinGapStep& step_;
   std::array<double, ThinGapUnknowns::per_node> floors_{};
 };
 
@@ -127,9 +127,10 @@ StepResult solve_step(const ThinGapLayout& layout, const Scene& scene, const Sta
       result.step = euler_step(layout, scene, part, dt / parts, begin + k * dt / parts);
       auto x = newton(result.step, part.x[0], matrix, timer, result.holder_force, reason);
       solved = x.has_value();
-      if (!solved) break;
-      part.d[0] = displacements(result.step, *x);
-      part.x[0] = std::move(*x);
+      if (solved) {
+        part.d[0] = displacements(result.step, *x);
+        part.x[0] = std::move(*x);
+      }
     }
     if (!solved) continue;
     spdlog::debug("thin-gap step {} taken in {} parts: {}", state.step + 1, parts, reason);

@@ -12,6 +12,7 @@
 #include "fom/io/checkpoint.hpp"
 #include "fom/io/time_series.hpp"
 #include "run_undula.hpp"
+#include "tests/unit/apps/final_state.hpp"
 
 namespace undula {
 namespace {
@@ -32,16 +33,6 @@ Words coarse(const std::string& command, const Words& more) {
 }
 
 void expect_done(const Outcome& outcome) { ASSERT_EQ(outcome.exit_code, 0) << outcome.err; }
-
-std::vector<double> final_state(const std::filesystem::path& folder) {
-  const auto file = Hdf5File::open_read(newest_checkpoint(folder / "checkpoints").value());
-  std::vector<double> all;
-  for (const char* name : {"x_0", "x_1", "d_0", "d_1"}) {
-    const auto values = file.read<double>(std::string("arrays/") + name);
-    all.insert(all.end(), values.begin(), values.end());
-  }
-  return all;
-}
 
 void expect_same_run(const std::filesystem::path& a, const std::filesystem::path& b) {
   for (const char* name : {"time_series.csv", "membrane.csv", "cycle_means.csv", "envelope.csv"}) {

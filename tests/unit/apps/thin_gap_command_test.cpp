@@ -8,6 +8,7 @@
 #include "base/hdf5_file.hpp"
 #include "fom/io/checkpoint.hpp"
 #include "fom/io/time_series.hpp"
+#include "tests/unit/apps/final_state.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
 namespace undula {
@@ -32,16 +33,6 @@ Outcome run_done(const Words& words, const std::filesystem::path& folder) {
   Outcome outcome = run_undula(words, folder);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   return outcome;
-}
-
-std::vector<double> final_state(const std::filesystem::path& folder) {
-  const auto file = Hdf5File::open_read(newest_checkpoint(folder / "checkpoints").value());
-  std::vector<double> all;
-  for (const char* name : {"x_0", "x_1", "d_0", "d_1"}) {
-    const auto values = file.read<double>(std::string("arrays/") + name);
-    all.insert(all.end(), values.begin(), values.end());
-  }
-  return all;
 }
 
 void expect_refused(const Outcome& outcome, const std::string& text) {
