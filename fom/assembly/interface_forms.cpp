@@ -29,7 +29,7 @@ void add_interface(const Discretisation<dim>& disc, const Share& share, Triplets
     if (!share.has(disc.velocity_unknown(fluid_nodes[0], 0))) continue;
     const int cell = disc.cut.parts[piece.part].cell;
     const auto& solid_nodes = disc.solid_spaces[piece.solid].cell_nodes[piece.solid_cell];
-    const auto& solid_mesh = disc.problem.solids[piece.solid].mesh;
+    const auto& solid_mesh = disc.placed_solids[piece.solid];
     const auto g = barycentric_gradients(disc.cut.mesh, cell);
     const Point<dim>& n = piece.normal;
     const double h = cell_diameter(disc.cut.mesh, cell);

@@ -11,8 +11,15 @@ namespace undula {
 enum class Space { plane, axisymmetric, thin_gap };
 enum class Extent { full };
 enum class Coupling {
-  fixed,    ///< the displacement does not move the fluid domain
-  implicit, ///< fluid domain and displacement of the same instant (thin gap)
+  fixed,     ///< the displacement does not move the fluid domain
+  mapped,    ///< one cut at rest; the motion enters through the ALE map
+  explicit_, ///< cut anew every step, where the solids are extrapolated to be
+  implicit,  ///< fluid domain and displacement of the same instant: cut and solve in turns (thin gap: Newton)
+};
+/// Where the solids are expected at the end of a step.
+enum class Extrapolation {
+  first, ///< d + dt v
+  second ///< 2 d - d_before, the second order with BDF2's velocities: d + dt (3 v - v_before) / 2
 };
 enum class SolidModel {
   linear,
@@ -20,7 +27,10 @@ enum class SolidModel {
   saint_venant_kirchhoff, ///< the linear law in the Green-Lagrange strain: large rotations, small strains
   neo_hookean,            ///< compressible; large strains
 };
-enum class Interface { no_slip };
+enum class Interface {
+  no_slip,
+  slip ///< Navier slip of the length of ContactSettings on the skin of the solids
+};
 enum class FlowModel { stokes, navier_stokes };
 enum class TimeScheme { bdf1, bdf2 };
 enum class OpeningCondition {
@@ -78,6 +88,22 @@ struct NewtonSettings {
   int max_iterations = 20;
 };
 
+/// How the fluid's domain follows the solids (couplings other than `fixed`).
+struct MotionSettings {
+  Extrapolation extrapolation = Extrapolation::second;
+  double tolerance = 0;    ///< cm, implicit: largest difference between placed and computed displacement
+  int max_iterations = 20; ///< implicit: turns of cut and solve in one step
+  int max_halvings = 6;    ///< of the time step, where a step fails or solids would pass a wall
+};
+
+/// Contact of the displaced solids with walls, by a penalty on the skin's nodes closer than `film`:
+/// pressure = stiffness * (film - gap) / film, without bound as stiffness * film / gap for smaller gaps.
+struct ContactSettings {
+  double film = 0;      ///< cm, thickness of the film that is kept; 0: no contact law
+  double stiffness = 0; ///< dyn/cm^2
+  double slip = 0;      ///< Navier slip length on the solids' skin, cm (Interface::slip)
+};
+
 struct TimeSettings {
   TimeScheme scheme = TimeScheme::bdf2;
   int steps_per_period = 0;
@@ -85,6 +111,7 @@ struct TimeSettings {
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
   int factor_every = 1;    ///< steps that share one factorisation; the rest is left to GMRES
   NewtonSettings newton;
+  MotionSettings motion;
 };
 
 /// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them
@@ -164,6 +191,7 @@ struct Scene {
   OperatingPoint operating_point;
   MeshSizes mesh;
   TimeSettings time;
+  ContactSettings contact;
   StabilisationWeights stabilisation;
   ThinGapSettings thin_gap;
   TrainingPlan training;

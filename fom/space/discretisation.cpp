@@ -119,23 +119,51 @@ void bisect(std::span<int> items, std::span<const Point<dim>> positions, int fir
 
 } // namespace
 
+namespace {
+
+/// Cut, numbering and constraints for the problem, the solids' spaces and their places in `disc`.
+template <int dim>
+void number_unknowns(Discretisation<dim>& disc, const CutOptions& options) {
+  disc.cut = cut_mesh<dim>(disc.problem.background, disc.placed_solids, options);
+  disc.fluid_nodes = build_dof_sets(disc.cut);
+  disc.solid_offset.assign(1, static_cast<int>(disc.fluid_nodes.dof_point.size()) * (dim + 1));
+  for (const auto& space : disc.solid_spaces)
+    disc.solid_offset.push_back(disc.solid_offset.back() + static_cast<int>(space.nodes.size()) * dim);
+  disc.is_constrained.assign(disc.unknowns(), 0);
+  constrain_boundary(disc);
+  constrain_solids(disc);
+}
+
+} // namespace
+
 template <int dim>
 Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& options) {
   Discretisation<dim> disc;
   disc.problem = std::move(problem);
-  std::vector<SimplexMesh<dim>> solid_meshes;
-  for (const auto& body : disc.problem.solids) solid_meshes.push_back(body.mesh);
-  disc.cut = cut_mesh<dim>(disc.problem.background, solid_meshes, options);
-  disc.fluid_nodes = build_dof_sets(disc.cut);
-  disc.solid_offset.push_back(static_cast<int>(disc.fluid_nodes.dof_point.size()) * (dim + 1));
   for (const auto& body : disc.problem.solids) {
+    disc.placed_solids.push_back(body.mesh);
     disc.solid_spaces.push_back(build_quadratic_space(body.mesh));
-    disc.solid_offset.push_back(disc.solid_offset.back() +
-                                static_cast<int>(disc.solid_spaces.back().nodes.size()) * dim);
   }
-  disc.is_constrained.assign(disc.unknowns(), 0);
-  constrain_boundary(disc);
-  constrain_solids(disc);
+  number_unknowns(disc, options);
+  return disc;
+}
+
+template <int dim>
+Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& placement,
+                          const CutOptions& options) {
+  Discretisation<dim> disc;
+  disc.problem = std::move(before.problem);
+  disc.solid_spaces = std::move(before.solid_spaces);
+  disc.interface_moves = true;
+  Eigen::Index first = 0;
+  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
+    // The vertices come first among the quadratic nodes.
+    auto& placed = disc.placed_solids.emplace_back(disc.problem.solids[s].mesh);
+    for (std::size_t i = 0; i < placed.points.size(); ++i)
+      placed.points[i] += placement.template segment<dim>(first + static_cast<Eigen::Index>(i) * dim);
+    first += static_cast<Eigen::Index>(disc.solid_spaces[s].nodes.size()) * dim;
+  }
+  number_unknowns(disc, options);
   return disc;
 }
 
@@ -173,6 +201,7 @@ Ownership distribute_unknowns(const Discretisation<dim>& disc, int ranks) {
 
 template struct Discretisation<2>;
 template Discretisation<2> discretise(FsiProblem<2>, const CutOptions&);
+template Discretisation<2> recut(Discretisation<2>&, const Eigen::VectorXd&, const CutOptions&);
 template std::vector<Point<2>> unknown_positions(const Discretisation<2>&);
 template Ownership distribute_unknowns(const Discretisation<2>&, int);
 

@@ -1,4 +1,5 @@
-// The unknowns of a fluid-structure problem on one cut: spaces, numbering, constraints, ownership.
+// The unknowns of a fluid-structure problem on one cut: spaces, numbering, constraints, ownership. The cut is
+// that of the solids at rest, or where they were placed (see recut).
 //
 // Unknowns in natural order: for every scalar fluid node i its dim velocity components and its pressure,
 // i * (dim + 1) + c; then for every solid its P2 nodes' velocities, offset + node * dim + c.
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "fom/problem.hpp"
+#include "fom/space/domain_map.hpp"
 #include "fom/space/solid_space.hpp"
 #include "geometry/cut.hpp"
 
@@ -34,6 +36,11 @@ struct ImposedNode {
 template <int dim>
 struct Discretisation {
   FsiProblem<dim> problem;
+  std::vector<SimplexMesh<dim>> placed_solids; ///< meshes of the solids where they were cut
+  /// The fluid's domain of this cut is the one of its instant and follows the solids from cut to cut; else
+  /// the domain is fixed, or moves by `map`.
+  bool interface_moves = false;
+  DomainMap<dim> map; ///< of the fluid's domain; empty: identity
   CutMesh<dim> cut;
   DofSets<dim> fluid_nodes;
   std::vector<QuadraticSpace<dim>> solid_spaces;
@@ -45,6 +52,7 @@ struct Discretisation {
 
   int fluid_unknowns() const { return solid_offset.front(); }
   int unknowns() const { return solid_offset.back(); }
+  int solid_unknowns() const { return unknowns() - fluid_unknowns(); }
   int velocity_unknown(int node, int component) const { return node * (dim + 1) + component; }
   int pressure_unknown(int node) const { return node * (dim + 1) + dim; }
   int solid_unknown(int solid, int node, int component) const {
@@ -55,6 +63,13 @@ struct Discretisation {
 /// Cuts the background, builds spaces and constraints. Throws InputError if a boundary name has no condition.
 template <int dim>
 Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& options);
+
+/// Cuts the background anew with the solids displaced by `placement`, the displacement of all solid nodes
+/// (cm, solid unknowns in their order, without the fluid's), and numbers the unknowns of that cut. Takes
+/// problem and solid spaces over from `before`, which keeps its cut and numbering for the transfer of fields.
+template <int dim>
+Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& placement,
+                          const CutOptions& options);
 
 /// Position of every unknown's node, for partitioning and plots.
 template <int dim>

@@ -43,8 +43,10 @@ Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& dis
                                                   const Eigen::VectorXd& x);
 
 /// Visits every entry (row, column, value) of the convection matrix for the convecting field `b`: the skew
-/// volume term of the share, and the momentum carried through openings that ask for it (see
-/// OpeningCondition). The sequence of (row, column) does not depend on `b`.
+/// volume term of the share, the momentum carried through openings that ask for it (see OpeningCondition)
+/// and, where the interface moves through the background, the momentum it takes along: half of (rho b.n u,
+/// v), so that with the time derivative the energy of the moving domain is kept. The sequence of (row,
+/// column) does not depend on `b`.
 template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
                       const Eigen::VectorXd& b, F&& f);
@@ -88,6 +90,23 @@ void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& ope
       if (condition.opening == OpeningCondition::static_pressure) through = std::max(through, 0.0);
       local += 0.5 * density * disc.cut.boundary_quadrature.weights[q] * measure(x[0]) * through * lambda *
                lambda.transpose();
+    }
+    for (int i = 0; i <= dim; ++i)
+      for (int j = 0; j <= dim; ++j)
+        for (int c = 0; c < dim; ++c)
+          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+  }
+  if (!disc.interface_moves) return;
+  for (const auto& piece : disc.cut.interface) {
+    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
+    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+    const auto velocity = part_velocity(disc, piece.part, b);
+    Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
+    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+      const auto& x = disc.cut.interface_quadrature.points[q];
+      const auto lambda = barycentric_coordinates(disc.cut.mesh, disc.cut.parts[piece.part].cell, x);
+      local += 0.5 * density * disc.cut.interface_quadrature.weights[q] * measure(x[0]) *
+               piece.normal.dot(velocity * lambda) * lambda * lambda.transpose();
     }
     for (int i = 0; i <= dim; ++i)
       for (int j = 0; j <= dim; ++j)
