@@ -1,46 +1,10 @@
 #include "fom/visual_mesh.hpp"
 
-#include <Eigen/LU>
-
 namespace undula {
-namespace {
-
-/// Vertices of simplices from their quadrature points. CutMesh keeps, for every simplex of a cut part, the
-/// points of one rule, x_q = sum_a lambda_qa v_a; the least-squares inverse of lambda gives the v_a back.
 template <int dim>
-class SimplexFromQuadrature {
-public:
-  explicit SimplexFromQuadrature(int degree) {
-    const auto rule = reference_rule<dim>(degree);
-    points_ = static_cast<int>(rule.weights.size());
-    Eigen::Matrix<double, Eigen::Dynamic, dim + 1> lambda(points_, dim + 1);
-    for (int q = 0; q < points_; ++q) lambda.row(q) = rule.barycentric[q].transpose();
-    inverse_ = (lambda.transpose() * lambda).inverse() * lambda.transpose();
-  }
-
-  int points() const { return points_; }
-
-  std::array<Point<dim>, dim + 1> vertices(const QuadratureSet<dim>& set, int begin) const {
-    std::array<Point<dim>, dim + 1> result;
-    for (int a = 0; a <= dim; ++a) {
-      result[a].setZero();
-      for (int q = 0; q < points_; ++q) result[a] += inverse_(a, q) * set.points[begin + q];
-    }
-    return result;
-  }
-
-private:
-  int points_ = 0;
-  Eigen::Matrix<double, dim + 1, Eigen::Dynamic> inverse_;
-};
-
-} // namespace
-
-template <int dim>
-FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc, int volume_degree) {
+FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
   FluidPicture<dim> picture;
   const auto& cut = disc.cut;
-  const SimplexFromQuadrature<dim> rule(volume_degree);
   std::vector<int> point_of_node(disc.fluid_nodes.dof_point.size(), -1);
   const auto add_point = [&](const Point<dim>& x, const std::array<int, dim + 1>& nodes,
                              const Eigen::Matrix<double, dim + 1, 1>& weights) {
@@ -64,8 +28,8 @@ FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc, int volume_degr
       picture.mesh.cells.push_back(simplex);
       continue;
     }
-    for (int q = part.quadrature_begin; q < part.quadrature_end; q += rule.points()) {
-      const auto vertices = rule.vertices(cut.volume_quadrature, q);
+    for (int s = part.simplex_begin; s < part.simplex_end; ++s) {
+      const auto& vertices = cut.simplices[s];
       for (int a = 0; a <= dim; ++a)
         simplex[a] = add_point(vertices[a], nodes, barycentric_coordinates(cut.mesh, part.cell, vertices[a]));
       picture.mesh.cells.push_back(simplex);
@@ -114,7 +78,7 @@ std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const Stat
           {"velocity", "cm/s", dim, solid_part(state.x[0])}};
 }
 
-template FluidPicture<2> fluid_picture(const Discretisation<2>&, int);
+template FluidPicture<2> fluid_picture(const Discretisation<2>&);
 template std::vector<NodalField> fluid_fields(const Discretisation<2>&, const FluidPicture<2>&, const State&);
 template std::vector<NodalField> solid_fields(const Discretisation<2>&, const State&);
 

@@ -20,10 +20,8 @@ struct FluidPicture {
   std::vector<Eigen::Matrix<double, dim + 1, 1>> weights;
 };
 
-/// `volume_degree` is the degree that the mesh was cut with (CutOptions::volume_degree).
 template <int dim>
-FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc,
-                                int volume_degree = CutOptions{}.volume_degree);
+FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc);
 
 /// The quadratic nodes of all solids, one after the other; every element split into four triangles through
 /// its edge mid-points.

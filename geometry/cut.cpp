@@ -22,7 +22,7 @@ public:
          const CutOptions& options)
       : solids_(solids),
         options_(options),
-        cut_{background, build_facet_table(background), {}, {0}, {}, {}, {}, {}, {}, {}},
+        cut_{background, build_facet_table(background), {}, {0}, {}, {}, {}, {}, {}, {}, {}},
         volume_rule_(reference_rule<dim>(options.volume_degree)),
         interface_rule_(reference_rule<dim - 1>(options.interface_degree)),
         boundary_rule_(reference_rule<dim - 1>(options.boundary_degree)),
@@ -91,7 +91,7 @@ private:
     for (const int i : grid_.touching(cell_box(cut_.mesh, cell))) near.push_back(all_solid_cells_[i]);
     const double measure = cell_measure(cut_.mesh, cell);
     if (near.empty()) {
-      cut_.parts.push_back({cell, false, measure, 0, 0});
+      cut_.parts.push_back({cell, false, measure});
       return;
     }
     const CellCut<dim> shape = cut_cell(table_, cell, std::span<const SolidCell>(near));
@@ -100,7 +100,7 @@ private:
     const int first = static_cast<int>(cut_.parts.size());
     const bool is_cut = !shape.removed.empty();
     for (int part = 0; part < shape.part_count; ++part) {
-      cut_.parts.push_back({cell, is_cut, is_cut ? 0 : measure, 0, 0});
+      cut_.parts.push_back({cell, is_cut, is_cut ? 0 : measure});
       if (is_cut) add_volume(shape, part, cut_.parts.back());
     }
     check_sum(near_cell, shape, first);
@@ -116,11 +116,16 @@ private:
   void add_volume(const CellCut<dim>& shape, int part, FluidPart& record) {
     auto& quadrature = cut_.volume_quadrature;
     record.quadrature_begin = static_cast<int>(quadrature.weights.size());
-    for (std::size_t i = 0; i < shape.pieces.size(); ++i)
-      if (shape.part_of_piece[i] == part)
-        for (const auto& simplex : triangulate<dim, dim>(shape.pieces[i]))
-          append_simplex_quadrature<dim, dim>(volume_rule_, simplex, quadrature);
+    record.simplex_begin = static_cast<int>(cut_.simplices.size());
+    for (std::size_t i = 0; i < shape.pieces.size(); ++i) {
+      if (shape.part_of_piece[i] != part) continue;
+      for (const auto& simplex : triangulate<dim, dim>(shape.pieces[i])) {
+        append_simplex_quadrature<dim, dim>(volume_rule_, simplex, quadrature);
+        cut_.simplices.push_back(simplex);
+      }
+    }
     record.quadrature_end = static_cast<int>(quadrature.weights.size());
+    record.simplex_end = static_cast<int>(cut_.simplices.size());
     record.measure =
         std::accumulate(quadrature.weights.begin() + record.quadrature_begin, quadrature.weights.end(), 0.0);
   }

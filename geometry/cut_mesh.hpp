@@ -17,6 +17,8 @@ struct FluidPart {
   double measure = 0;       ///< cm^dim
   int quadrature_begin = 0; ///< range in CutMesh::volume_quadrature (empty for uncut parts)
   int quadrature_end = 0;
+  int simplex_begin = 0; ///< range in CutMesh::simplices (empty for uncut parts)
+  int simplex_end = 0;
 };
 
 /// Convex piece of the skin of a solid that bounds one fluid part (several may share part and solid cell).
@@ -58,6 +60,9 @@ struct CutMesh {
   QuadratureSet<dim> volume_quadrature;
   QuadratureSet<dim> interface_quadrature;
   QuadratureSet<dim> boundary_quadrature;
+  /// Vertices (cm) of the simplices that fill the cut parts, those of one part in a row; interiors are
+  /// disjoint. The volume quadrature holds one rule per simplex, in the same order.
+  std::vector<std::array<Point<dim>, dim + 1>> simplices;
 };
 
 /// Scalar nodal unknowns of the P1 space on the fluid parts. Around a background point the parts that are
