@@ -115,6 +115,11 @@ void train(const TrainOptions& options, MPI_Comm comm) {
                      "undula hq on the scene itself, which takes seconds; or a scene of finite elements",
                      scene.file.string() + ", section [model]");
   }
+  if (scene.coupling != Coupling::fixed) {
+    throw InputError("a reduced model is projected from operators that never change",
+                     "a model.coupling that moves the fluid's domain", "coupling = \"fixed\"",
+                     scene.file.string() + ", section [model]");
+  }
   if (scene.solid_model != SolidModel::linear) {
     throw InputError("a reduced model is projected from linear operators of the solid",
                      "a model.solid with a nonlinear law", "solid = \"linear\"",

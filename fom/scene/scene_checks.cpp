@@ -54,14 +54,50 @@ void check_damping(const Scene& scene, const std::string& where) {
   }
 }
 
+std::string coupling_name(Coupling coupling) {
+  switch (coupling) {
+    case Coupling::fixed:
+      return "fixed";
+    case Coupling::mapped:
+      return "mapped";
+    case Coupling::explicit_:
+      return "explicit";
+    case Coupling::implicit:
+      return "implicit";
+  }
+  return "";
+}
+
+void check_contact(const Scene& scene, const std::string& where) {
+  const ContactSettings& contact = scene.contact;
+  if (scene.space == Space::thin_gap &&
+      (contact.film > 0 || contact.stiffness > 0 || contact.slip > 0 || scene.interface == Interface::slip)) {
+    throw InputError("thin gaps have a law of contact of their own",
+                     scene.interface == Interface::slip ? "interface = \"slip\"" : "keys of [contact]",
+                     "\"thin_gap.film_thickness_mm\" and \"thin_gap.contact_stiffness_dyn_per_cm3\"",
+                     where + ", section [contact]");
+  }
+  if ((contact.film > 0) != (contact.stiffness > 0)) {
+    throw InputError("the law of contact is stated by half",
+                     "film_mm = " + shortest_number(units::length_to_mm(contact.film)) +
+                         ", stiffness_dyn_per_cm2 = " + shortest_number(contact.stiffness),
+                     "both positive, or both 0", where + ", section [contact]");
+  }
+  if ((contact.slip > 0) != (scene.interface == Interface::slip)) {
+    throw InputError("slip is stated by half",
+                     "slip_length_mm = " + shortest_number(units::length_to_mm(contact.slip)) +
+                         " with interface = " + (contact.slip > 0 ? "\"no-slip\"" : "\"slip\""),
+                     "model.interface = \"slip\" with \"slip_length_mm\" > 0, or neither",
+                     where + ", section [contact]");
+  }
+}
+
 void check_levels(const Scene& scene, const std::string& where) {
   const bool thin_gap = scene.space == Space::thin_gap;
-  if (thin_gap != (scene.coupling == Coupling::implicit)) {
+  if (thin_gap && scene.coupling != Coupling::implicit) {
     throw InputError("the geometric coupling does not go with the space",
-                     thin_gap ? "coupling = \"fixed\" in thin gaps" : "coupling = \"implicit\"",
-                     thin_gap ? "coupling = \"implicit\": gaps follow the membrane"
-                              : "coupling = \"fixed\", or space = \"thin-gap\"",
-                     where + ", section [model]");
+                     "coupling = \"" + coupling_name(scene.coupling) + "\" in thin gaps",
+                     "coupling = \"implicit\": gaps follow the membrane", where + ", section [model]");
   }
   if (!thin_gap && scene.solid_model == SolidModel::von_karman) {
     throw InputError("the solid does not go with the space", "solid = \"von-karman\"",
@@ -122,6 +158,7 @@ void check_consistency(const Scene& scene, const std::string& where) {
   check_geometry(scene, where);
   check_clamp(scene, where);
   check_levels(scene, where);
+  check_contact(scene, where);
   check_damping(scene, where);
   check_time(scene, where);
   check_training(scene, where);

@@ -48,12 +48,16 @@ std::vector<SceneKey> model_keys() {
       {"model.extent", "", "part of the pump that is computed", shapes_state,
        choice<FIELD(extent)>({name("full", Extent::full)}, {"head", "lower"}, "full")},
       {"model.coupling", "",
-       "geometric coupling; `fixed`: the displacement does not move the fluid domain, one cut; `implicit`: "
-       "it "
-       "does, at the same instant (thin gap only)",
+       "how the fluid's domain follows the solids; `fixed`: not at all, one cut at rest; `mapped`: one cut "
+       "at "
+       "rest, the motion enters through a map of the domain; `explicit`: cut anew every step, where the "
+       "solids "
+       "are extrapolated to be; `implicit`: cut and solve in turns until both agree (thin gap: always, by "
+       "Newton)",
        shapes_state,
-       choice<FIELD(coupling)>({name("fixed", Coupling::fixed), name("implicit", Coupling::implicit)},
-                               {"mapped", "explicit"}, "fixed")},
+       choice<FIELD(coupling)>({name("fixed", Coupling::fixed), name("mapped", Coupling::mapped),
+                                name("explicit", Coupling::explicit_), name("implicit", Coupling::implicit)},
+                               {}, "fixed")},
       {"model.solid", "",
        "constitutive law of the membrane; `saint-venant-kirchhoff`: large rotations, small strains; "
        "`neo-hookean`: large strains, mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2; `von-karman`: plate "
@@ -65,8 +69,12 @@ std::vector<SceneKey> model_keys() {
             name("saint-venant-kirchhoff", SolidModel::saint_venant_kirchhoff),
             name("neo-hookean", SolidModel::neo_hookean), name("von-karman", SolidModel::von_karman)},
            {}, "linear")},
-      {"model.interface", "", "condition between fluid and solid", shapes_state,
-       choice<FIELD(interface)>({name("no-slip", Interface::no_slip)}, {"slip"}, "no-slip")},
+      {"model.interface", "",
+       "condition between fluid and solid; `slip`: along the skin the fluid slips by Navier's law, with the "
+       "length `contact.slip_length_mm`",
+       shapes_state,
+       choice<FIELD(interface)>({name("no-slip", Interface::no_slip), name("slip", Interface::slip)}, {},
+                                "no-slip")},
       {"model.flow", "", "flow equations; `stokes` leaves convection out", shapes_state,
        choice<FIELD(flow)>(
            {name("stokes", FlowModel::stokes), name("navier-stokes", FlowModel::navier_stokes)},
@@ -159,6 +167,33 @@ std::vector<SceneKey> numerics_keys() {
        shapes_state, RealKey{FIELD(time.newton.tolerance), 1, between(0, 1), NewtonSettings{}.tolerance}},
       {"time.newton_iterations", "", "nonlinear solids: iterations of Newton after which a step has failed",
        shapes_state, IntegerKey{FIELD(time.newton.max_iterations), 1, 1000, NewtonSettings{}.max_iterations}},
+      {"time.extrapolation", "",
+       "where a step expects the solids at its end, other couplings than `fixed`; `first`: d + dt v; "
+       "`second`: "
+       "of second order in time",
+       shapes_state,
+       choice<FIELD(time.motion.extrapolation)>(
+           {name("first", Extrapolation::first), name("second", Extrapolation::second)}, {}, "second")},
+      {"time.coupling_tolerance_mm", "mm",
+       "implicit coupling: largest difference between placed and computed displacement", shapes_state,
+       RealKey{FIELD(time.motion.tolerance), cm_per_mm, above_to(0, 10), 1e-4}},
+      {"time.coupling_iterations", "",
+       "implicit coupling: turns of cut and solve after which a step has failed", shapes_state,
+       IntegerKey{FIELD(time.motion.max_iterations), 1, 1000, MotionSettings{}.max_iterations}},
+      {"time.halvings", "",
+       "how often a step that fails, or that would take solids through a wall, may be halved; other "
+       "couplings "
+       "than `fixed`",
+       shapes_state, IntegerKey{FIELD(time.motion.max_halvings), 0, 30, MotionSettings{}.max_halvings}},
+      {"contact.film_mm", "mm",
+       "thickness of the film of fluid kept between solids and walls; 0: no law of contact", shapes_state,
+       RealKey{FIELD(contact.film), cm_per_mm, from_to(0, 10), 0.0}},
+      {"contact.stiffness_dyn_per_cm2", "dyn_per_cm2",
+       "pressure of contact = stiffness * (film - gap) / film, for gaps below the film", shapes_state,
+       RealKey{FIELD(contact.stiffness), 1, from_to(0, 1e15), 0.0}},
+      {"contact.slip_length_mm", "mm",
+       "Navier's slip length on the solids' skin, with `interface = \"slip\"`", shapes_state,
+       RealKey{FIELD(contact.slip), cm_per_mm, from_to(0, 1e4), 0.0}},
       {"output.fields_every", "", "steps between field files; 0: none", leaves_state,
        IntegerKey{FIELD(output.fields_every), 0, many, 0}},
       {"output.checkpoint_every", "", "steps between checkpoints; 0: none", leaves_state,
@@ -301,7 +336,7 @@ std::span<const SceneKey> scene_table() {
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 11> help = {{
+  static const std::array<std::pair<const char*, const char*>, 12> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
       {"geometry", "Either a profile, or meshes made elsewhere."},
       {"fluid", "Newtonian, incompressible."},
@@ -309,6 +344,7 @@ std::string section_help(const std::string& section) {
       {"operating_point", "What the pump is driven with."},
       {"mesh", "Element sizes for meshes made from a profile."},
       {"time", "The time step is the period over `steps_per_period`."},
+      {"contact", "Solids that come close to walls, and the slip that lets them (finite elements)."},
       {"output", "Files besides the time series and the cycle means."},
       {"stabilisation",
        "Weights of the stabilised cut finite elements. One set serves all operating points."},
