@@ -33,8 +33,16 @@ void on_root(MPI_Comm comm, const std::function<void()>& task) {
 void broadcast_state(MPI_Comm comm, State& state) {
   MPI_Bcast(&state.step, 1, MPI_INT, 0, comm);
   MPI_Bcast(&state.time, 1, MPI_DOUBLE, 0, comm);
-  for (auto* levels : {&state.x, &state.d})
-    for (auto& level : *levels) MPI_Bcast(level.data(), static_cast<int>(level.size()), MPI_DOUBLE, 0, comm);
+  MPI_Bcast(&state.last_step, 1, MPI_DOUBLE, 0, comm);
+  const auto broadcast = [&](Eigen::VectorXd& values) {
+    auto size = static_cast<long long>(values.size());
+    MPI_Bcast(&size, 1, MPI_LONG_LONG, 0, comm);
+    values.resize(size);
+    MPI_Bcast(values.data(), static_cast<int>(size), MPI_DOUBLE, 0, comm);
+  };
+  for (auto* levels : {&state.x, &state.d, &state.map})
+    for (auto& level : *levels) broadcast(level);
+  broadcast(state.placement);
 }
 
 } // namespace undula

@@ -1,5 +1,6 @@
 #include "fom/simulation.hpp"
 
+#include "fom/moving/moving_stepper.hpp"
 #include "fom/pump_problem.hpp"
 
 namespace undula {
@@ -33,20 +34,40 @@ double time_step(const Scene& scene) {
   return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);
 }
 
-void march(const PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
-           const StepCallback& on_step) {
-  TimeStepper<2> stepper(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
-                         scene.time.factor_every, timer, scene.time.newton);
-  const int last_step = scene.time.periods * scene.time.steps_per_period;
-  while (state.step < last_step) {
+namespace {
+
+/// Steps and observes until the scene's last step. `stepper` advances a state; `last_step` gives the
+/// TimeStepper of the step that ended.
+template <class Stepper, class LastStep>
+void step_and_observe(PreparedScene& prepared, int last, State& state, PhaseTimer& timer,
+                      const StepCallback& on_step, Stepper& stepper, const LastStep& last_step) {
+  while (state.step < last) {
     stepper.advance(state);
     Observation seen;
     {
       const auto scope = timer.measure("observe");
-      seen = observe(prepared.disc, prepared.operators, stepper, prepared.observation, state);
+      seen = observe(prepared.disc, prepared.operators, last_step(), prepared.observation, state);
     }
     on_step(state, seen);
   }
+}
+
+} // namespace
+
+void march(PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
+           const StepCallback& on_step) {
+  const int last = scene.time.periods * scene.time.steps_per_period;
+  if (scene.coupling == Coupling::fixed) {
+    TimeStepper<2> stepper(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
+                           scene.time.factor_every, timer, scene.time.newton);
+    step_and_observe(prepared, last, state, timer, on_step, stepper,
+                     [&]() -> const TimeStepper<2>& { return stepper; });
+    return;
+  }
+  MovingStepper<2> stepper(prepared.disc, prepared.operators, scene.coupling, scene.time, time_step(scene),
+                           timer, state);
+  step_and_observe(prepared, last, state, timer, on_step, stepper,
+                   [&]() -> const TimeStepper<2>& { return stepper.last_step(); });
 }
 
 } // namespace undula

@@ -32,9 +32,10 @@ double time_step(const Scene& scene);
 /// Called after every step on every rank.
 using StepCallback = std::function<void(const State&, const Observation&)>;
 
-/// Marches from `state` to the end of the scene's last period. Throws NumericsError on every rank, leaving
-/// `state` at the last good step. Phases "assemble", "factor", "solve", "observe".
-void march(const PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
+/// Marches from `state` to the end of the scene's last period. Where the fluid's domain moves, discretisation
+/// and operators in `prepared` follow the state. Throws NumericsError on every rank, leaving `state` at the
+/// last good step. Phases "assemble", "factor", "solve", "observe".
+void march(PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
            const StepCallback& on_step);
 
 } // namespace undula

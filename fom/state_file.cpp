@@ -5,7 +5,9 @@
 namespace undula {
 namespace {
 
-constexpr std::array<const char*, 2> x_names = {"x_0", "x_1"}, d_names = {"d_0", "d_1"};
+constexpr std::array<const char*, 2> x_names = {"x_0", "x_1"}, d_names = {"d_0", "d_1"},
+                                     map_names = {"map_0", "map_1"};
+constexpr const char* placement_name = "placement";
 
 std::vector<double> to_array(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
@@ -13,30 +15,46 @@ std::vector<double> to_array(const Eigen::VectorXd& values) { return {values.beg
 
 Checkpoint checkpoint_of(const State& state, const SceneStamp& scene,
                          const std::map<std::string, std::string>& provenance) {
-  Checkpoint checkpoint{state.step, state.time, {}, {}, scene, provenance};
+  Checkpoint checkpoint{state.step, state.time, {{"last_step", state.last_step}}, {}, scene, provenance};
+  if (state.placement.size() > 0) checkpoint.arrays[placement_name] = to_array(state.placement);
   for (std::size_t level = 0; level < 2; ++level) {
     checkpoint.arrays[x_names[level]] = to_array(state.x[level]);
     checkpoint.arrays[d_names[level]] = to_array(state.d[level]);
+    if (state.map[level].size() > 0) checkpoint.arrays[map_names[level]] = to_array(state.map[level]);
   }
   return checkpoint;
 }
 
 State state_of(const Checkpoint& checkpoint, const State& like, const std::filesystem::path& file) {
-  const auto array = [&](const char* name, Eigen::Index expected) -> Eigen::VectorXd {
+  const auto refuse = [&](const char* name, std::size_t size, const std::string& allowed) {
+    throw InputError("the checkpoint does not fit the mesh",
+                     "array " + std::string(name) + " of " + std::to_string(size) + " values", allowed,
+                     file.string());
+  };
+  const auto array = [&](const char* name) -> Eigen::VectorXd {
     const auto found = checkpoint.arrays.find(name);
-    const auto size = found == checkpoint.arrays.end() ? 0 : found->second.size();
-    if (found == checkpoint.arrays.end() || size != static_cast<std::size_t>(expected))
-      throw InputError("the checkpoint does not fit the mesh",
-                       "array " + std::string(name) + " of " + std::to_string(size) + " values",
-                       std::to_string(expected) + " values", file.string());
-    return Eigen::Map<const Eigen::VectorXd>(found->second.data(), expected);
+    if (found == checkpoint.arrays.end()) return {};
+    return Eigen::Map<const Eigen::VectorXd>(found->second.data(),
+                                             static_cast<Eigen::Index>(found->second.size()));
   };
   State state;
   state.step = checkpoint.step;
   state.time = checkpoint.time;
+  if (const auto found = checkpoint.scalars.find("last_step"); found != checkpoint.scalars.end())
+    state.last_step = found->second;
+  state.placement = array(placement_name);
   for (std::size_t level = 0; level < 2; ++level) {
-    state.x[level] = array(x_names[level], like.x[level].size());
-    state.d[level] = array(d_names[level], like.d[level].size());
+    state.x[level] = array(x_names[level]);
+    state.d[level] = array(d_names[level]);
+    state.map[level] = array(map_names[level]);
+    // A cut of its own has unknowns of its own.
+    const auto expected =
+        state.placement.size() > 0 && state.map[level].size() == 0 ? state.x[0].size() : like.x[level].size();
+    for (const auto* names : {&x_names, &d_names}) {
+      const auto size = (names == &x_names ? state.x : state.d)[level].size();
+      if (size != expected || size == 0)
+        refuse((*names)[level], static_cast<std::size_t>(size), std::to_string(expected) + " values");
+    }
   }
   return state;
 }

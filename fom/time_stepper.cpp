@@ -43,13 +43,13 @@ double imposed_fluid_value(const ConstrainedUnknown<dim>& constrained, double t)
   return constrained.condition->velocity(constrained.position, t)[constrained.component];
 }
 
+} // namespace
+
 template <int dim>
 Point<dim> imposed_displacement(const Discretisation<dim>& disc, const ImposedNode<dim>& node, double t) {
   const auto& field = disc.problem.solids[node.solid].imposed_displacement;
   return field ? field(node.position, t) : Point<dim>::Zero();
 }
-
-} // namespace
 
 template <int dim>
 State initial_state(const Discretisation<dim>& disc) {
@@ -59,9 +59,9 @@ State initial_state(const Discretisation<dim>& disc) {
   return state;
 }
 
-std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step) {
+std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step, double ratio) {
   if (scheme == TimeScheme::bdf1 || step <= 1) return {1.0, -1.0, 0.0};
-  return {1.5, -2.0, 0.5};
+  return {(1 + 2 * ratio) / (1 + ratio), -(1 + ratio), ratio * ratio / (1 + ratio)};
 }
 
 template <int dim>
@@ -93,9 +93,14 @@ void TimeStepper<dim>::impose(const State& state, std::array<double, 3> alpha, d
 
 template <int dim>
 void TimeStepper<dim>::advance(State& state) {
+  advance_to((state.step + 1) * dt_, state);
+}
+
+template <int dim>
+void TimeStepper<dim>::advance_to(double t, State& state) {
   const int step = state.step + 1;
-  const double t = step * dt_;
-  const auto alpha = bdf_coefficients(scheme_, step);
+  const double ratio = state.last_step > 0 ? dt_ / state.last_step : 1.0;
+  const auto alpha = bdf_coefficients(scheme_, step, ratio);
   const Eigen::VectorXd history_d = alpha[1] * state.d[0] + alpha[2] * state.d[1];
   Eigen::VectorXd rhs;
   {
@@ -105,8 +110,9 @@ void TimeStepper<dim>::advance(State& state) {
     sum_over_ranks(operators_.comm, rhs);
     rhs += loads_at(disc_, operators_, t);
     impose(state, alpha, t, rhs);
-    convecting_ =
-        scheme_ == TimeScheme::bdf2 && step > 1 ? Eigen::VectorXd(2 * state.x[0] - state.x[1]) : state.x[0];
+    convecting_ = scheme_ == TimeScheme::bdf2 && step > 1
+                      ? Eigen::VectorXd((1 + ratio) * state.x[0] - ratio * state.x[1])
+                      : state.x[0];
   }
   system_.assemble({alpha[0] / dt_, dt_ / alpha[0]}, &convecting_);
   Eigen::VectorXd x;
@@ -135,13 +141,13 @@ void TimeStepper<dim>::advance(State& state) {
   state.x[0] = std::move(x);
   state.step = step;
   state.time = t;
+  alpha_ = alpha;
 }
 
 template <int dim>
 Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
-  const auto alpha = bdf_coefficients(scheme_, state.step);
   const auto& x = state.x[0];
-  const Eigen::VectorXd rate = (alpha[0] * x + alpha[1] * state.x[1] + alpha[2] * older_x_) / dt_;
+  const Eigen::VectorXd rate = (alpha_[0] * x + alpha_[1] * state.x[1] + alpha_[2] * older_x_) / dt_;
   Eigen::VectorXd sum = operators_.mass * rate + operators_.physical * x + operators_.stabilisation * x +
                         operators_.damping * x + operators_.stiffness * state.d[0] +
                         convection_of(disc_, operators_, convecting_, x);
@@ -275,6 +281,7 @@ Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators
   return sum - loads_at(disc, operators, 0.0);
 }
 
+template Point<2> imposed_displacement(const Discretisation<2>&, const ImposedNode<2>&, double);
 template State initial_state(const Discretisation<2>&);
 template class TimeStepper<2>;
 template int solve_steady(const Discretisation<2>&, const Operators<2>&, double, int, PhaseTimer&,

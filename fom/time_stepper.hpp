@@ -12,9 +12,14 @@ namespace undula {
 /// velocities).
 struct State {
   int step = 0;
-  double time = 0; ///< s
+  double time = 0;      ///< s
+  double last_step = 0; ///< s between the two levels; 0: one regular step
   std::array<Eigen::VectorXd, 2> x;
   std::array<Eigen::VectorXd, 2> d;
+  /// Displacement of the solids at which the fluid's domain was cut, or mapped: cm, the solids' unknowns
+  /// only. Empty: at rest.
+  Eigen::VectorXd placement;
+  std::array<Eigen::VectorXd, 2> map; ///< cm, DomainMap::displacement at both levels; empty: identity
 };
 
 /// Rest.
@@ -22,7 +27,12 @@ template <int dim>
 State initial_state(const Discretisation<dim>& disc);
 
 /// (alpha_0 y^{n+1} + alpha_1 y^n + alpha_2 y^{n-1}) / dt approximates dy/dt at n+1.
-std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step);
+/// The first step is BDF1. `ratio`: dt over the time between n-1 and n.
+std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step, double ratio = 1.0);
+
+/// Displacement imposed on a node at time t, cm.
+template <int dim>
+Point<dim> imposed_displacement(const Discretisation<dim>& disc, const ImposedNode<dim>& node, double t);
 
 /// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
 ///   holder + opening + body = viscous + stabilisation + damping + (mass T x, x) + (elastic force(d), x).
@@ -49,6 +59,9 @@ public:
   /// NumericsError on every rank, leaving `state` at the last good step.
   void advance(State& state);
 
+  /// The same to time t, which has to be one dt later; for steps that are parts of a regular one.
+  void advance_to(double t, State& state);
+
   /// Terms of the step that ended in `state` (state.step >= 1).
   EnergyTerms energy(const State& state) const;
 
@@ -73,6 +86,7 @@ private:
   NewtonSettings newton_;
   int iterations_ = 0;
   LinearSystem<dim> system_;
+  std::array<double, 3> alpha_{};     ///< of the last step
   Eigen::VectorXd older_x_, older_d_; ///< levels n-1 of the last step, for the energy terms
   Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step
 };

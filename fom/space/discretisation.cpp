@@ -121,10 +121,9 @@ void bisect(std::span<int> items, std::span<const Point<dim>> positions, int fir
 
 namespace {
 
-/// Cut, numbering and constraints for the problem, the solids' spaces and their places in `disc`.
+/// Numbering and constraints for the cut, problem and solids' spaces in `disc`.
 template <int dim>
-void number_unknowns(Discretisation<dim>& disc, const CutOptions& options) {
-  disc.cut = cut_mesh<dim>(disc.problem.background, disc.placed_solids, options);
+void number_unknowns(Discretisation<dim>& disc) {
   disc.fluid_nodes = build_dof_sets(disc.cut);
   disc.solid_offset.assign(1, static_cast<int>(disc.fluid_nodes.dof_point.size()) * (dim + 1));
   for (const auto& space : disc.solid_spaces)
@@ -144,7 +143,8 @@ Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& option
     disc.placed_solids.push_back(body.mesh);
     disc.solid_spaces.push_back(build_quadratic_space(body.mesh));
   }
-  number_unknowns(disc, options);
+  disc.cut = cut_mesh<dim>(disc.problem.background, disc.placed_solids, options);
+  number_unknowns(disc);
   return disc;
 }
 
@@ -152,18 +152,19 @@ template <int dim>
 Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& placement,
                           const CutOptions& options) {
   Discretisation<dim> disc;
-  disc.problem = std::move(before.problem);
-  disc.solid_spaces = std::move(before.solid_spaces);
   disc.interface_moves = true;
   Eigen::Index first = 0;
-  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
+  for (std::size_t s = 0; s < before.problem.solids.size(); ++s) {
     // The vertices come first among the quadratic nodes.
-    auto& placed = disc.placed_solids.emplace_back(disc.problem.solids[s].mesh);
+    auto& placed = disc.placed_solids.emplace_back(before.problem.solids[s].mesh);
     for (std::size_t i = 0; i < placed.points.size(); ++i)
       placed.points[i] += placement.template segment<dim>(first + static_cast<Eigen::Index>(i) * dim);
-    first += static_cast<Eigen::Index>(disc.solid_spaces[s].nodes.size()) * dim;
+    first += static_cast<Eigen::Index>(before.solid_spaces[s].nodes.size()) * dim;
   }
-  number_unknowns(disc, options);
+  disc.cut = cut_mesh<dim>(before.problem.background, disc.placed_solids, options); // may throw: before stays
+  disc.problem = std::move(before.problem);
+  disc.solid_spaces = std::move(before.solid_spaces);
+  number_unknowns(disc);
   return disc;
 }
 

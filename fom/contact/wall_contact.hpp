@@ -1,0 +1,66 @@
+// Contact of displaced solids with the walls of the fluid's domain: a film that resists being closed.
+//
+// A node of the skin at distance g from the nearest wall is pushed off by the pressure
+//   p(g) = stiffness * (film / g - 1)   for g < film, 0 beyond,
+// a barrier that no finite load closes; below a small part of the film, its tangent. The pressure acts along the
+// normal of the wall on the area that belongs to the node. It is linearised about where the solids are placed:
+// implicit in the displacement of the step, with the set of nodes in contact known beforehand.
+#pragma once
+
+#include "fom/assembly/sparse.hpp"
+#include "fom/space/discretisation.hpp"
+
+namespace undula {
+
+/// What of a problem takes part in contact, prepared once.
+template <int dim>
+struct WallContact {
+  ContactSettings settings;
+  struct SkinNode {
+    int unknown = -1; ///< of component 0 among the solids' unknowns
+    double area = 0;  ///< cm^(dim-1) at rest, with the measure
+    Point<dim> at_rest;
+  };
+  std::vector<SkinNode> skin; ///< free nodes
+  struct Wall {
+    std::array<Point<dim>, dim> points;
+    Point<dim> normal; ///< into the fluid
+  };
+  std::vector<Wall> walls; ///< boundary facets with imposed velocity
+};
+
+template <int dim>
+WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactSettings& settings);
+
+/// Pressure of the film, dyn/cm^2, and its derivative by the gap.
+struct FilmPressure {
+  double pressure = 0, slope = 0;
+};
+FilmPressure film_pressure(const ContactSettings& settings, double gap);
+
+/// Distance of a place to the nearest wall, negative outside of the domain, and the direction that opens it.
+template <int dim>
+struct Gap {
+  double distance = 0; ///< cm
+  Point<dim> direction;
+};
+template <int dim>
+Gap<dim> gap_to_walls(const WallContact<dim>& contact, const Point<dim>& x);
+
+/// Smallest gap of the skin's free nodes when the solids are displaced by `placement` (solids' unknowns).
+/// Infinite without walls or free skin.
+template <int dim>
+double smallest_gap(const WallContact<dim>& contact, const Eigen::VectorXd& placement);
+
+/// The film's force on the solids, linearised about `placement`: force = load - stiffness * displacement.
+/// Unknowns of all, dyn and dyn/cm; 0 at a gap beyond the film.
+struct ContactForce {
+  Triplets stiffness;
+  Eigen::VectorXd load;
+  int nodes = 0; ///< in contact
+};
+template <int dim>
+ContactForce contact_force(const WallContact<dim>& contact, const Discretisation<dim>& disc,
+                           const Eigen::VectorXd& placement);
+
+} // namespace undula

@@ -1,0 +1,123 @@
+#include "fom/moving/moving_stepper.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace undula {
+
+template <int dim>
+MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& operators, Coupling coupling,
+                                  const TimeSettings& settings, double dt, PhaseTimer& timer,
+                                  const State& state)
+    : disc_(disc), operators_(operators), coupling_(coupling), settings_(settings), dt_(dt), timer_(timer) {
+  restore(state);
+  if (state.x[0].size() != disc_.unknowns())
+    throw InputError("the state does not fit the cut at its placement",
+                     std::to_string(state.x[0].size()) + " values",
+                     std::to_string(disc_.unknowns()) + " unknowns", "State::x");
+}
+
+template <int dim>
+void MovingStepper<dim>::restore(const State& state) {
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(disc_.solid_unknowns());
+  {
+    const auto scope = timer_.measure("cut");
+    disc_ = recut(disc_, state.placement.size() > 0 ? state.placement : rest, cut_options_);
+  }
+  operators_ = build_operators(disc_, operators_.comm, timer_);
+}
+
+template <int dim>
+Eigen::VectorXd MovingStepper<dim>::extrapolated_placement(const State& state, double t, double dt) const {
+  const Eigen::Index solids = disc_.solid_unknowns();
+  const double ratio = state.last_step > 0 ? dt / state.last_step : 1.0;
+  const auto displacement = state.d[0].tail(solids), velocity = state.x[0].tail(solids);
+  Eigen::VectorXd placement = displacement + dt * velocity;
+  // The velocity half-way through the step, by what it was before.
+  if (settings_.motion.extrapolation == Extrapolation::second && state.step > 0)
+    placement += 0.5 * dt * ratio * (velocity - state.x[1].tail(solids));
+  for (const auto& node : disc_.imposed)
+    placement.template segment<dim>(node.unknown - disc_.fluid_unknowns()) =
+        imposed_displacement(disc_, node, t);
+  return placement;
+}
+
+template <int dim>
+void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
+  const State before = state;
+  const auto solids = disc_.solid_unknowns();
+  Discretisation<dim> origin; // cut and numbering of `before`
+  Eigen::VectorXd placement = extrapolated_placement(state, t, dt);
+  const int turns = coupling_ == Coupling::implicit ? settings_.motion.max_iterations : 1;
+  double error = 0;
+  for (int turn = 1; turn <= turns; ++turn) {
+    {
+      const auto scope = timer_.measure("cut");
+      auto next = recut(disc_, placement, cut_options_);
+      if (turn == 1) origin = std::move(disc_);
+      disc_ = std::move(next);
+      const FieldTransfer<dim> transfer(origin, disc_);
+      for (int level : {0, 1}) {
+        state.x[level] = transfer.unknowns(before.x[level]);
+        state.d[level] = transfer.displacements(before.d[level]);
+      }
+      state.step = before.step;
+      state.time = before.time;
+      report_.new_nodes = std::max(report_.new_nodes, transfer.extended());
+    }
+    operators_ = build_operators(disc_, operators_.comm, timer_);
+    stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton);
+    stepper_->advance_to(t, state);
+    state.last_step = dt;
+    state.placement = placement;
+    error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();
+    report_.iterations = std::max(report_.iterations, turn);
+    report_.placement_error = std::max(report_.placement_error, error);
+    if (coupling_ != Coupling::implicit || error <= settings_.motion.tolerance) return;
+    placement = state.d[0].tail(solids);
+  }
+  throw NumericsError("cut and solve do not settle",
+                      "t = " + std::to_string(t) + " s, the solids end " + std::to_string(error) +
+                          " cm from where they were placed after " + std::to_string(turns) + " turns",
+                      "a smaller time step, more turns (time.coupling_iterations) or a larger tolerance "
+                      "(time.coupling_tolerance_mm)");
+}
+
+template <int dim>
+void MovingStepper<dim>::advance(State& state) {
+  const State before = state;
+  const double end = (before.step + 1) * dt_;
+  // After parts, the step is tried in half as many.
+  int parts = before.last_step > 0 ? static_cast<int>(std::lround(dt_ / before.last_step)) : 1;
+  parts = std::max(1, parts / 2);
+  while (true) {
+    report_ = {};
+    report_.parts = parts;
+    try {
+      for (int part = 1; part <= parts; ++part)
+        advance_part(part == parts ? end : before.time + dt_ * part / parts, dt_ / parts, state);
+      state.step = before.step + 1;
+      return;
+    } catch (const NumericsError& error) {
+      state = before;
+      restore(state);
+      parts *= 2;
+      if (parts > (1 << settings_.motion.max_halvings))
+        throw NumericsError(
+            std::string("the time step was halved as often as allowed: ") + error.what(),
+            "step " + std::to_string(before.step + 1) + ", t = " + std::to_string(end) + " s",
+            "restart from the last checkpoint with a smaller step, or more halvings (time.halvings)");
+      if (operators_.rank == 0) spdlog::warn("step {} in {} parts: {}", before.step + 1, parts, error.what());
+    }
+  }
+}
+
+template class MovingStepper<2>;
+
+} // namespace undula

@@ -1,0 +1,58 @@
+// Time stepping of a fluid's domain that follows the solids: place the geometry, then one step of
+// TimeStepper.
+//
+//   explicit  cut anew where the solids are extrapolated to be, fields transferred to the new unknowns
+//   implicit  the same in turns, until the solids end where they were placed
+//   mapped    one cut at rest; the ALE map follows the extrapolated solids
+#pragma once
+
+#include <optional>
+
+#include "fom/moving/field_transfer.hpp"
+#include "fom/time_stepper.hpp"
+
+namespace undula {
+
+/// What moved in one step.
+struct MotionReport {
+  int parts = 1;              ///< steps that the regular step was divided into
+  int iterations = 1;         ///< turns of placing and solving, the most of all parts
+  int new_nodes = 0;          ///< fluid nodes that took their history from the extension
+  double placement_error = 0; ///< cm, largest difference between placed and computed displacement
+};
+
+template <int dim>
+class MovingStepper {
+public:
+  /// Brings `disc` and `operators` to where `state` has its geometry. Both are replaced at every step and
+  /// have to outlive the stepper. Throws InputError if the state does not fit that geometry.
+  MovingStepper(Discretisation<dim>& disc, Operators<dim>& operators, Coupling coupling,
+                const TimeSettings& settings, double dt, PhaseTimer& timer, const State& state);
+
+  /// One regular step, in parts where the numerics or the geometry fail at the whole one. Phases "cut",
+  /// "transfer" besides those of TimeStepper. Collective; throws NumericsError on every rank, leaving
+  /// `state`, disc and operators at the last good step.
+  void advance(State& state);
+
+  /// The last part of the last step: energies and reactions.
+  const TimeStepper<dim>& last_step() const { return *stepper_; }
+  const MotionReport& report() const { return report_; }
+
+private:
+  void advance_part(double t, double dt, State& state);
+  Eigen::VectorXd extrapolated_placement(const State& state, double t, double dt) const;
+  void place(const Eigen::VectorXd& placement, State& state);
+  void restore(const State& state);
+
+  Discretisation<dim>& disc_;
+  Operators<dim>& operators_;
+  Coupling coupling_;
+  TimeSettings settings_;
+  double dt_;
+  PhaseTimer& timer_;
+  CutOptions cut_options_;
+  std::optional<TimeStepper<dim>> stepper_;
+  MotionReport report_;
+};
+
+} // namespace undula
