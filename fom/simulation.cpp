@@ -64,8 +64,8 @@ void march(PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer
                      [&]() -> const TimeStepper<2>& { return stepper; });
     return;
   }
-  MovingStepper<2> stepper(prepared.disc, prepared.operators, scene.coupling, scene.time, time_step(scene),
-                           timer, state);
+  MovingStepper<2> stepper(prepared.disc, prepared.operators, scene.coupling, scene.time, scene.contact,
+                           time_step(scene), timer, state);
   step_and_observe(prepared, last, state, timer, on_step, stepper,
                    [&]() -> const TimeStepper<2>& { return stepper.last_step(); });
 }

@@ -77,6 +77,13 @@ TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<d
       system_(disc, operators, factor_every, timer) {}
 
 template <int dim>
+Eigen::VectorXd TimeStepper<dim>::loads(double t) const {
+  Eigen::VectorXd load = loads_at(disc_, operators_, t);
+  if (contact_) load += contact_->load;
+  return load;
+}
+
+template <int dim>
 void TimeStepper<dim>::impose(const State& state, std::array<double, 3> alpha, double t,
                               Eigen::VectorXd& rhs) const {
   for (const auto& constrained : disc_.constrained)
@@ -108,7 +115,7 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
     rhs = operators_.stiffness * (history_d / alpha[0]) -
           operators_.mass * ((alpha[1] * state.x[0] + alpha[2] * state.x[1]) / dt_);
     sum_over_ranks(operators_.comm, rhs);
-    rhs += loads_at(disc_, operators_, t);
+    rhs += loads(t);
     impose(state, alpha, t, rhs);
     convecting_ = scheme_ == TimeScheme::bdf2 && step > 1
                       ? Eigen::VectorXd((1 + ratio) * state.x[0] - ratio * state.x[1])
@@ -156,7 +163,7 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
     sum += solids.elastic + solids.viscous;
   }
-  return sum - loads_at(disc_, operators_, state.time);
+  return sum - loads(state.time);
 }
 
 template <int dim>
@@ -178,6 +185,11 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   terms.damping = sums[2];
   terms.kinetic = sums[3];
   terms.elastic = sums[4];
+  if (contact_) {
+    const Eigen::VectorXd film = contact_->stiffness * state.d[0];
+    terms.elastic -= 0.5 * state.d[0].dot(film);
+    terms.contact = x.dot(film - contact_->load);
+  }
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
     terms.elastic += solids.energy;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "fom/contact/wall_contact.hpp"
 #include "fom/system/newton.hpp"
 
 namespace undula {
@@ -35,7 +37,8 @@ template <int dim>
 Point<dim> imposed_displacement(const Discretisation<dim>& disc, const ImposedNode<dim>& node, double t);
 
 /// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
-///   holder + opening + body = viscous + stabilisation + damping + (mass T x, x) + (elastic force(d), x).
+///   holder + opening + body
+///     = viscous + stabilisation + damping + contact + (mass T x, x) + (elastic force(d), x).
 struct EnergyTerms {
   double holder = 0;        ///< power of the imposed motion on the solids (reaction times velocity)
   double boundary = 0;      ///< power of imposed fluid velocities
@@ -44,6 +47,7 @@ struct EnergyTerms {
   double viscous = 0;       ///< dissipation of the fluid (with the consistent interface terms)
   double stabilisation = 0; ///< dissipation of the penalties
   double damping = 0;       ///< dissipation of the solids, Kelvin-Voigt and Rayleigh
+  double contact = 0;       ///< power spent on closing the film of contact
   double carried = 0;       ///< kinetic energy carried through openings (static_pressure, traction)
   double kinetic = 0;       ///< energy, erg
   double elastic = 0;       ///< energy, erg
@@ -61,6 +65,10 @@ public:
 
   /// The same to time t, which has to be one dt later; for steps that are parts of a regular one.
   void advance_to(double t, State& state);
+
+  /// Adds the force of contact to the following steps; its stiffness has to be in operators.stiffness too, on
+  /// one rank.
+  void set_contact(ContactForce contact) { contact_ = std::move(contact); }
 
   /// Terms of the step that ended in `state` (state.step >= 1).
   EnergyTerms energy(const State& state) const;
@@ -86,6 +94,9 @@ private:
   NewtonSettings newton_;
   int iterations_ = 0;
   LinearSystem<dim> system_;
+  Eigen::VectorXd loads(double t) const;
+
+  std::optional<ContactForce> contact_;
   std::array<double, 3> alpha_{};     ///< of the last step
   Eigen::VectorXd older_x_, older_d_; ///< levels n-1 of the last step, for the energy terms
   Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step

@@ -54,7 +54,6 @@ WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactS
       }
     }
   }
-  for (const auto& [unknown, node] : skin) contact.skin.push_back(node);
   const auto facets = build_facet_table(disc.problem.background);
   for (const auto& facet : facets.facets) {
     if (facet.cells[1] >= 0) continue;
@@ -66,6 +65,8 @@ WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactS
     wall.normal =
         barycentric_gradients(disc.problem.background, facet.cells[0]).col(facet.local[0]).normalized();
   }
+  for (const auto& [unknown, node] : skin)
+    if (gap_to_walls<dim>(contact, node.at_rest).distance > settings.film) contact.skin.push_back(node);
   return contact;
 }
 
@@ -106,6 +107,7 @@ ContactForce contact_force(const WallContact<dim>& contact, const Discretisation
                            const Eigen::VectorXd& placement) {
   ContactForce force;
   force.load = Eigen::VectorXd::Zero(disc.unknowns());
+  Triplets entries;
   for (const auto& node : contact.skin) {
     const Point<dim> displacement = placement.template segment<dim>(node.unknown);
     const auto gap = gap_to_walls<dim>(contact, node.at_rest + displacement);
@@ -118,9 +120,9 @@ ContactForce contact_force(const WallContact<dim>& contact, const Discretisation
         (node.area * film.pressure + stiffness * gap.direction.dot(displacement)) * gap.direction;
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)
-        force.stiffness.emplace_back(unknown + i, unknown + j,
-                                     stiffness * gap.direction[i] * gap.direction[j]);
+        entries.emplace_back(unknown + i, unknown + j, stiffness * gap.direction[i] * gap.direction[j]);
   }
+  force.stiffness = compress(disc.unknowns(), entries);
   return force;
 }
 

@@ -2,9 +2,9 @@
 //
 // A node of the skin at distance g from the nearest wall is pushed off by the pressure
 //   p(g) = stiffness * (film / g - 1)   for g < film, 0 beyond,
-// a barrier that no finite load closes; below a small part of the film, its tangent. The pressure acts along the
-// normal of the wall on the area that belongs to the node. It is linearised about where the solids are placed:
-// implicit in the displacement of the step, with the set of nodes in contact known beforehand.
+// a barrier that no finite load closes; below a small part of the film, its tangent. The pressure acts along
+// the normal of the wall on the area that belongs to the node. It is linearised about where the solids are
+// placed: implicit in the displacement of the step, with the set of nodes in contact known beforehand.
 #pragma once
 
 #include "fom/assembly/sparse.hpp"
@@ -21,7 +21,8 @@ struct WallContact {
     double area = 0;  ///< cm^(dim-1) at rest, with the measure
     Point<dim> at_rest;
   };
-  std::vector<SkinNode> skin; ///< free nodes
+  /// Free nodes. Those that are within the film of a wall at rest are left out: there a solid is attached.
+  std::vector<SkinNode> skin;
   struct Wall {
     std::array<Point<dim>, dim> points;
     Point<dim> normal; ///< into the fluid
@@ -55,7 +56,7 @@ double smallest_gap(const WallContact<dim>& contact, const Eigen::VectorXd& plac
 /// The film's force on the solids, linearised about `placement`: force = load - stiffness * displacement.
 /// Unknowns of all, dyn and dyn/cm; 0 at a gap beyond the film.
 struct ContactForce {
-  Triplets stiffness;
+  SparseMatrix stiffness;
   Eigen::VectorXd load;
   int nodes = 0; ///< in contact
 };

@@ -13,9 +13,10 @@ namespace undula {
 
 template <int dim>
 MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& operators, Coupling coupling,
-                                  const TimeSettings& settings, double dt, PhaseTimer& timer,
-                                  const State& state)
+                                  const TimeSettings& settings, const ContactSettings& contact, double dt,
+                                  PhaseTimer& timer, const State& state)
     : disc_(disc), operators_(operators), coupling_(coupling), settings_(settings), dt_(dt), timer_(timer) {
+  if (contact.film > 0) contact_ = prepare_contact(disc_, contact);
   restore(state);
   if (state.x[0].size() != disc_.unknowns())
     throw InputError("the state does not fit the cut at its placement",
@@ -49,6 +50,15 @@ Eigen::VectorXd MovingStepper<dim>::extrapolated_placement(const State& state, d
 }
 
 template <int dim>
+void MovingStepper<dim>::check_walls(const Eigen::VectorXd& displacement, const char* what) const {
+  if (!contact_) return;
+  const double gap = smallest_gap(*contact_, displacement);
+  if (gap > 0) return;
+  throw NumericsError(what, "smallest gap " + std::to_string(gap) + " cm",
+                      "a smaller time step, or a stiffer or thicker film (section [contact])");
+}
+
+template <int dim>
 void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
   const State before = state;
   const auto solids = disc_.solid_unknowns();
@@ -57,6 +67,7 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
   const int turns = coupling_ == Coupling::implicit ? settings_.motion.max_iterations : 1;
   double error = 0;
   for (int turn = 1; turn <= turns; ++turn) {
+    check_walls(placement, "a solid would be placed beyond a wall");
     {
       const auto scope = timer_.measure("cut");
       auto next = recut(disc_, placement, cut_options_);
@@ -72,8 +83,16 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
       report_.new_nodes = std::max(report_.new_nodes, transfer.extended());
     }
     operators_ = build_operators(disc_, operators_.comm, timer_);
+    std::optional<ContactForce> contact;
+    if (contact_) {
+      contact = contact_force(*contact_, disc_, placement);
+      report_.contact_nodes = std::max(report_.contact_nodes, contact->nodes);
+      if (operators_.rank == 0) operators_.stiffness += contact->stiffness;
+    }
     stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton);
+    if (contact) stepper_->set_contact(std::move(*contact));
     stepper_->advance_to(t, state);
+    check_walls(state.d[0].tail(solids), "a solid has passed a wall");
     state.last_step = dt;
     state.placement = placement;
     error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();

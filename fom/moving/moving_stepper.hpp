@@ -18,6 +18,7 @@ struct MotionReport {
   int parts = 1;              ///< steps that the regular step was divided into
   int iterations = 1;         ///< turns of placing and solving, the most of all parts
   int new_nodes = 0;          ///< fluid nodes that took their history from the extension
+  int contact_nodes = 0;      ///< nodes of the skin in the film of contact
   double placement_error = 0; ///< cm, largest difference between placed and computed displacement
 };
 
@@ -27,7 +28,8 @@ public:
   /// Brings `disc` and `operators` to where `state` has its geometry. Both are replaced at every step and
   /// have to outlive the stepper. Throws InputError if the state does not fit that geometry.
   MovingStepper(Discretisation<dim>& disc, Operators<dim>& operators, Coupling coupling,
-                const TimeSettings& settings, double dt, PhaseTimer& timer, const State& state);
+                const TimeSettings& settings, const ContactSettings& contact, double dt, PhaseTimer& timer,
+                const State& state);
 
   /// One regular step, in parts where the numerics or the geometry fail at the whole one. Phases "cut",
   /// "transfer" besides those of TimeStepper. Collective; throws NumericsError on every rank, leaving
@@ -41,8 +43,8 @@ public:
 private:
   void advance_part(double t, double dt, State& state);
   Eigen::VectorXd extrapolated_placement(const State& state, double t, double dt) const;
-  void place(const Eigen::VectorXd& placement, State& state);
   void restore(const State& state);
+  void check_walls(const Eigen::VectorXd& displacement, const char* what) const;
 
   Discretisation<dim>& disc_;
   Operators<dim>& operators_;
@@ -50,6 +52,7 @@ private:
   TimeSettings settings_;
   double dt_;
   PhaseTimer& timer_;
+  std::optional<WallContact<dim>> contact_;
   CutOptions cut_options_;
   std::optional<TimeStepper<dim>> stepper_;
   MotionReport report_;

@@ -96,8 +96,8 @@ struct MotionSettings {
   int max_halvings = 6;    ///< of the time step, where a step fails or solids would pass a wall
 };
 
-/// Contact of the displaced solids with walls, by a penalty on the skin's nodes closer than `film`:
-/// pressure = stiffness * (film - gap) / film, without bound as stiffness * film / gap for smaller gaps.
+/// Contact of the displaced solids with walls: nodes of the skin closer than `film` are pushed off by
+/// stiffness * (film / gap - 1).
 struct ContactSettings {
   double film = 0;      ///< cm, thickness of the film that is kept; 0: no contact law
   double stiffness = 0; ///< dyn/cm^2

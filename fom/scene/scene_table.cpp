@@ -189,7 +189,7 @@ std::vector<SceneKey> numerics_keys() {
        "thickness of the film of fluid kept between solids and walls; 0: no law of contact", shapes_state,
        RealKey{FIELD(contact.film), cm_per_mm, from_to(0, 10), 0.0}},
       {"contact.stiffness_dyn_per_cm2", "dyn_per_cm2",
-       "pressure of contact = stiffness * (film - gap) / film, for gaps below the film", shapes_state,
+       "pressure of contact = stiffness * (film / gap - 1), for gaps below the film", shapes_state,
        RealKey{FIELD(contact.stiffness), 1, from_to(0, 1e15), 0.0}},
       {"contact.slip_length_mm", "mm",
        "Navier's slip length on the solids' skin, with `interface = \"slip\"`", shapes_state,

@@ -56,7 +56,7 @@ struct MovingPlate {
     }
     TimeSettings settings;
     settings.motion.tolerance = 1e-9;
-    stepper.emplace(disc, operators, coupling, settings, dt, timer, state);
+    stepper.emplace(disc, operators, coupling, settings, ContactSettings{}, dt, timer, state);
   }
 
   Eigen::VectorXd displacement(double t) const {
