@@ -63,6 +63,8 @@ struct CutMesh {
   /// Vertices (cm) of the simplices that fill the cut parts, those of one part in a row; interiors are
   /// disjoint. The volume quadrature holds one rule per simplex, in the same order.
   std::vector<std::array<Point<dim>, dim + 1>> simplices;
+  int exact_cells = 0;    ///< cells near solids that were cut in exact arithmetic
+  int filtered_cells = 0; ///< cells that were cut in floating point, every sign certain
 };
 
 /// Scalar nodal unknowns of the P1 space on the fluid parts. Around a background point the parts that are
