@@ -22,6 +22,7 @@
 #include "fom/root_rank.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_tolerance.hpp"
+#include "fom/scene_problem.hpp"
 
 namespace undula {
 namespace {
@@ -118,6 +119,7 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
     check_picture_name(options.picture);
   }
   const Scene scene = read_scene(options.scene, options.overrides);
+  require_pump(scene, "undula calibrate");
   std::vector<FreeKey> keys;
   for (const std::string& text : options.free) {
     keys.push_back(parse_free_key(text));

@@ -13,9 +13,9 @@
 #include "apps/commands.hpp"
 #include "apps/text_table.hpp"
 #include "base/units.hpp"
-#include "fom/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
+#include "fom/scene_problem.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
 #include "geometry/mesh_quality.hpp"
 
@@ -36,7 +36,7 @@ struct NamedMesh {
 
 /// Meshes the profile, or reads the meshes, of a scene; throws InputError for what is wrong with them.
 std::vector<NamedMesh> check_meshes(const Scene& scene) {
-  const FsiProblem<2> problem = pump_problem(scene);
+  const FsiProblem<2> problem = scene_problem(scene);
   std::vector<NamedMesh> meshes = {{"background", mesh_quality(problem.background)}};
   for (const SolidBody<2>& solid : problem.solids) {
     meshes.push_back({solid.name, mesh_quality(solid.mesh)});

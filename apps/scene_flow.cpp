@@ -3,6 +3,7 @@
 #include "base/units.hpp"
 #include "fom/io/text_file.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene_problem.hpp"
 
 namespace undula {
 
@@ -14,7 +15,9 @@ Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
   if (stroke_mm) {
     overrides.push_back("operating_point.stroke_mm=" + exact_number(*stroke_mm));
   }
-  return read_scene(file, overrides);
+  Scene scene = read_scene(file, overrides);
+  require_pump(scene, "a head-flow curve");
+  return scene;
 }
 
 FlowAtHead flow_of_scene(PreparedLevel& level, const Scene& scene, const std::function<void()>& on_step) {

@@ -2,6 +2,7 @@
 //   undula solve data/scenes/wave_pump_fixed.toml --output run --plot
 //   undula solve data/scenes/wave_pump_fixed.toml --output run --restart --set time.periods=20
 //   undula solve data/scenes/wave_pump_thin_gap.toml --output run --plot
+//   undula solve data/scenes/cylinder_2d1.toml --output run --plot --set domain.size_mm=10
 //   mpirun -np 2 undula solve data/scenes/wave_pump_fixed.toml --output run --json -- -log_view
 #include <spdlog/spdlog.h>
 
@@ -15,11 +16,13 @@
 #include "apps/solve_plots.hpp"
 #include "apps/text_table.hpp"
 #include "base/error.hpp"
+#include "fom/io/series_statistics.hpp"
 #include "fom/level.hpp"
 #include "fom/root_rank.hpp"
 #include "fom/run_directory.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
+#include "fom/scene_problem.hpp"
 
 namespace undula {
 namespace {
@@ -38,11 +41,37 @@ struct SolveOptions {
 struct SolvedRun {
   std::string scene, hash, folder;
   int unknowns = 0, ranks = 1;
-  int first_step = 0, last_step = 0; ///< of this process; the run itself begins at rest
-  std::vector<PeriodSummary> periods;
+  int first_step = 0, last_step = 0;        ///< of this process; the run itself begins at rest
+  std::vector<PeriodSummary> periods;       ///< of a pump
+  std::vector<ColumnStatistics> statistics; ///< of a scene that states its problem
 };
 
+SolvedRun summary(const Scene& scene, const RunDirectory& output, int unknowns, int ranks, int first_step,
+                  int last_step) {
+  SolvedRun run = {
+      scene.name, scene_hash(scene), output.folder().string(), unknowns, ranks, first_step, last_step, {},
+      {}};
+  if (scene.problem.stated) {
+    run.statistics = series_statistics(output.series(), scene.output.statistics_from);
+  } else {
+    run.periods = summarise_periods(output.series(), scene.time.steps_per_period);
+  }
+  return run;
+}
+
+std::string statistics_text(const std::vector<ColumnStatistics>& statistics) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ColumnStatistics& one : statistics) {
+    rows.push_back({one.column, shortest(one.last), shortest(one.mean), shortest(one.amplitude),
+                    one.oscillations == 0 ? "-" : shortest(one.frequency_Hz)});
+  }
+  return text_table({"column", "last", "mean", "amplitude", "frequency (Hz)"}, rows);
+}
+
 std::string table_text(const SolvedRun& run) {
+  if (!run.statistics.empty()) {
+    return statistics_text(run.statistics);
+  }
   std::vector<std::vector<std::string>> rows;
   for (const PeriodSummary& period : run.periods) {
     rows.push_back({std::to_string(period.period), decimals(period.outflow_l_per_min, 4),
@@ -75,6 +104,13 @@ std::string json_text(const SolvedRun& run, const PhaseTimer& timer) {
                                  {"speed_max_cm_per_s", period.speed_max_cm_per_s},
                                  {"clearance_min_mm", period.clearance_min_mm}});
   }
+  for (const ColumnStatistics& one : run.statistics) {
+    result["statistics"][one.column] = {{"last", one.last},
+                                        {"mean", one.mean},
+                                        {"amplitude", one.amplitude},
+                                        {"frequency_Hz", one.frequency_Hz},
+                                        {"oscillations", one.oscillations}};
+  }
   for (const auto& [phase, record] : timer.records()) {
     result["phases"][phase] = {{"seconds", record.seconds}, {"calls", record.calls}};
   }
@@ -104,7 +140,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   std::optional<RunDirectory> output; // on rank 0
   on_root(comm, [&] {
     const auto scope = timer.measure("output");
-    output.emplace(folder, view_level(level), scene, existing, ranks, state);
+    output.emplace(folder, view_level(level, scene), scene, existing, ranks, state);
     if (options.restart) {
       spdlog::info("{} goes on from step {}", folder, state.step);
     }
@@ -113,7 +149,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   const int first_step = state.step;
 
   // 4. March. Where the numerics fail, the last good state stays.
-  const int steps = scene.time.periods * scene.time.steps_per_period - first_step;
+  const int steps = last_step(scene) - first_step;
   try {
     std::optional<Progress> progress;
     if (rank == 0) {
@@ -137,10 +173,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   // 5. Write.
   on_root(comm, [&] {
     output->finish(state, timer);
-    const SolvedRun run = {scene.name, scene_hash(scene),
-                           folder,     unknowns(level),
-                           ranks,      first_step,
-                           state.step, summarise_periods(output->series(), scene.time.steps_per_period)};
+    const SolvedRun run = summary(scene, *output, unknowns(level), ranks, first_step, state.step);
     if (scene.coupling == Coupling::fixed && !run.periods.empty() &&
         run.periods.back().clearance_min_mm < 0) {
       spdlog::warn(

@@ -62,7 +62,7 @@ FieldOnTriangles field_on(const FieldMesh<2>& mesh, std::span<const std::array<i
 
 void plot_state(const std::filesystem::path& folder, const LevelView& view, const State& state,
                 const std::string& title) {
-  const FieldMesh<2>& mesh = view.fluid;
+  const FieldMesh<2> mesh = view.moved_fluid ? view.moved_fluid(state) : view.fluid;
   const auto fields = view.fluid_fields(state);
   const std::vector<double> speed = magnitudes(field_named(fields, "velocity"));
   std::vector<double> pressure_mmHg;
@@ -134,6 +134,10 @@ void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, co
 } // namespace
 
 void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
+  if (scene.problem.stated) {
+    plot_state(run.folder(), run.view(), state, scene.name + ", t = " + shortest(state.time) + " s");
+    return;
+  }
   const auto& point = scene.operating_point;
   const std::string title = scene.name + ": " + shortest(point.frequency) + " Hz, stroke " +
                             shortest(units::length_to_mm(point.stroke)) + " mm, head " +

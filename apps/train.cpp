@@ -18,6 +18,7 @@
 #include "fom/root_rank.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
+#include "fom/scene_problem.hpp"
 #include "training/build_model.hpp"
 #include "training/campaign.hpp"
 
@@ -110,6 +111,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
 
   // 1. The scene, the plan, and the folder of the runs.
   const Scene scene = read_scene(options.scene, options.overrides);
+  require_pump(scene, "undula train");
   if (scene.space == Space::thin_gap) {
     throw InputError("a thin-gap scene needs no reduced model", "model.space = \"thin-gap\"",
                      "undula hq on the scene itself, which takes seconds; or a scene of finite elements",

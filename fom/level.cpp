@@ -26,7 +26,7 @@ std::array<Point<2>, 2> box_around(const std::vector<Point<2>>& points) {
   return box;
 }
 
-LevelView view(const PreparedScene& prepared) {
+LevelView view(const PreparedScene& prepared, const Scene& scene) {
   const auto& disc = prepared.disc;
   const auto picture = std::make_shared<const FluidPicture<2>>(fluid_picture(disc));
   LevelView view;
@@ -36,8 +36,18 @@ LevelView view(const PreparedScene& prepared) {
   const auto& background = disc.problem.background;
   for (const auto& facet : background.boundary)
     view.outlines.push_back({background.points[facet.points[0]], background.points[facet.points[1]]});
-  view.membrane_box = box_around(disc.problem.solids[0].mesh.points);
-  view.fluid_fields = [&disc, picture](const State& state) { return fluid_fields(disc, *picture, state); };
+  view.membrane_box =
+      box_around(disc.problem.solids.empty() ? background.points : disc.problem.solids[0].mesh.points);
+  if (scene.coupling == Coupling::fixed) {
+    view.fluid_fields = [&disc, picture](const State& state) { return fluid_fields(disc, *picture, state); };
+  } else {
+    // The discretisation follows the state, so the picture is made when it is asked for.
+    view.moved_fluid = [&disc](const State&) { return moved_picture(disc).mesh; };
+    view.fluid_fields = [&disc](const State& state) {
+      return fluid_fields(disc, fluid_picture(disc), state);
+    };
+  }
+  view.rows = {!scene.problem.stated, scene.space == Space::plane, prepared.observation.stated.columns};
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;
 }
@@ -84,8 +94,8 @@ void march(PreparedLevel& level, const Scene& scene, State& state, PhaseTimer& t
              level);
 }
 
-LevelView view_level(const PreparedLevel& level) {
-  return std::visit(Overloaded{[](const FiniteElements& prepared) { return view(*prepared); },
+LevelView view_level(const PreparedLevel& level, const Scene& scene) {
+  return std::visit(Overloaded{[&](const FiniteElements& prepared) { return view(*prepared, scene); },
                                [](const ThinGapModel& model) { return view(model); }},
                     level);
 }

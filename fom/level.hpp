@@ -32,7 +32,8 @@ State initial_state(const PreparedLevel& level);
 void march(PreparedLevel& level, const Scene& scene, State& state, PhaseTimer& timer,
            const StepCallback& on_step);
 
-/// What is written and drawn of the level; for one rank. `level` has to outlive it.
-LevelView view_level(const PreparedLevel& level);
+/// What is written and drawn of the level that was prepared from `scene`; for one rank. `level` has to
+/// outlive it.
+LevelView view_level(const PreparedLevel& level, const Scene& scene);
 
 } // namespace undula

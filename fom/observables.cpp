@@ -41,11 +41,12 @@ bool inside(const Point<2>& x, const std::vector<std::array<Point<2>, 2>>& outli
   return odd;
 }
 
-double minimal_clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d) {
+double minimal_clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, int solid_unknowns) {
   if (plan.walls.empty() || plan.skin_unknowns.empty()) return 0.0;
+  const Eigen::VectorXd moved = d.tail(solid_unknowns);
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < plan.skin_unknowns.size(); ++i) {
-    const Point<2> x = plan.skin_positions[i] + d.segment<2>(plan.skin_unknowns[i]);
+    const Point<2> x = plan.skin_positions[i] + moved.segment<2>(plan.skin_unknowns[i]);
     double nearest = std::numeric_limits<double>::infinity();
     for (const auto& wall : plan.walls) nearest = std::min(nearest, distance_to_segment(x, wall));
     smallest = std::min(smallest, inside(x, plan.outline) ? nearest : -nearest);
@@ -86,7 +87,7 @@ WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operator
 template <int dim>
 MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count) {
   MembraneProbes probes;
-  probes.axial.resize(count, disc.unknowns());
+  probes.axial.resize(count, disc.solid_unknowns());
   const auto& mesh = disc.problem.solids[0].mesh;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const auto& x : mesh.points) {
@@ -111,7 +112,7 @@ MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count) {
     const auto shape = quadratic_values<dim>(barycentric_coordinates(mesh, best, x));
     const auto& nodes = disc.solid_spaces[0].cell_nodes[best];
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      entries.emplace_back(k, disc.solid_unknown(0, nodes[i], dim - 1), shape[i]);
+      entries.emplace_back(k, disc.solid_unknown(0, nodes[i], dim - 1) - disc.fluid_unknowns(), shape[i]);
     probes.radius.push_back(r);
   }
   probes.axial.setFromTriplets(entries.begin(), entries.end());
@@ -121,13 +122,13 @@ MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count) {
 template <int dim>
 ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe_count) {
   ObservationPlan<dim> plan;
-  if (!disc.problem.solids.empty()) plan.probes = membrane_probes(disc, probe_count);
+  if (!disc.problem.solids.empty() && probe_count > 0) plan.probes = membrane_probes(disc, probe_count);
   for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
     std::set<int> skin;
     for (const auto& facet : disc.problem.solids[s].mesh.boundary)
       skin.insert(facet.points.begin(), facet.points.end());
     for (const int node : skin) {
-      plan.skin_unknowns.push_back(disc.solid_unknown(static_cast<int>(s), node, 0));
+      plan.skin_unknowns.push_back(disc.solid_unknown(static_cast<int>(s), node, 0) - disc.fluid_unknowns());
       plan.skin_positions.push_back(disc.solid_spaces[s].nodes[node]);
     }
   }
@@ -155,15 +156,16 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   }
   if (const auto inlet = operators.openings.find(inlet_name); inlet != operators.openings.end())
     seen.inflow = -inlet->second.dot(x);
+  seen.stated = observe_stated(plan.stated, disc, operators, stepper, state);
   seen.energy = stepper.energy(state);
   for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());
   const auto shear = wall_shear(disc, operators, x);
   seen.wall_shear_max = shear.maximum;
   seen.wall_shear_mean = shear.mean;
-  seen.clearance_min = minimal_clearance(plan, state.d[0]);
+  seen.clearance_min = minimal_clearance(plan, state.d[0], disc.solid_unknowns());
   if (!plan.probes.radius.empty()) {
-    const Eigen::VectorXd axial = plan.probes.axial * state.d[0];
+    const Eigen::VectorXd axial = plan.probes.axial_displacement(state.d[0]);
     seen.tip_displacement = axial[0];
     seen.holder_displacement = axial[axial.size() - 1];
   }

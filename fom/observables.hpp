@@ -1,14 +1,17 @@
 // What a run reports at every step, in cgs.
 #pragma once
 
-#include "fom/time_stepper.hpp"
+#include "fom/stated_observables.hpp"
 
 namespace undula {
 
 /// Axial displacement along the membrane's mid-plane as a linear functional of the displacement array.
 struct MembraneProbes {
   std::vector<double> radius; ///< cm, ascending
-  SparseMatrix axial;         ///< radius.size() x unknowns
+  SparseMatrix axial;         ///< radius.size() x solid unknowns, the last of the displacement array
+
+  /// Axial displacement at the probes, cm, from a whole displacement array (State::d).
+  Eigen::VectorXd axial_displacement(const Eigen::VectorXd& d) const { return axial * d.tail(axial.cols()); }
 };
 
 /// `count` probes, evenly spaced in r over solid 0, half-way between its lower and upper skin.
@@ -28,18 +31,21 @@ struct Observation {
   double clearance_min = 0;       ///< cm, displaced skin to walls; negative where the skin has passed a wall
   double tip_displacement = 0;    ///< cm, axial, innermost probe
   double holder_displacement = 0; ///< cm, axial, outermost probe
+  std::vector<double> stated;     ///< by StatedObservables::columns, cgs
 };
 
 /// Precomputed geometry of the observables.
 template <int dim>
 struct ObservationPlan {
   MembraneProbes probes;
-  std::vector<int> skin_unknowns;                   ///< component 0 of the skin's nodes, all solids
+  std::vector<int> skin_unknowns; ///< component 0 of the skin's nodes, counted from the solids' first unknown
   std::vector<Point<dim>> skin_positions;           ///< at rest, cm
   std::vector<std::array<Point<dim>, dim>> walls;   ///< boundary simplices with imposed velocity
   std::vector<std::array<Point<dim>, dim>> outline; ///< all boundary simplices
+  StatedObservables stated;                         ///< empty but for scenes that state their problem
 };
 
+/// No probes for `probe_count` 0.
 template <int dim>
 ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe_count);
 

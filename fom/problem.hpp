@@ -21,7 +21,7 @@ template <int dim>
 struct BoundaryCondition {
   enum class Kind {
     velocity, ///< u = velocity(x, t), imposed strongly
-    symmetry, ///< the component along x (r in axisymmetric space) vanishes: axis of symmetry
+    symmetry, ///< the normal component vanishes on a side along a coordinate axis: axis of symmetry
     opening   ///< normal stress by `pressure`, see OpeningCondition
   };
   Kind kind = Kind::velocity;
@@ -43,6 +43,7 @@ struct SolidBody {
   std::function<bool(const Point<dim>&)> imposed; ///< empty: nowhere
   VectorField<dim> imposed_displacement;          ///< cm, empty: zero
   VectorField<dim> body_force;                    ///< dyn/cm^3, empty: zero
+  VectorField<dim> initial_velocity;              ///< cm/s at rest positions, t = 0; empty: zero
 };
 
 /// `background` may have no cells (a solid in vacuo) and `solids` may be empty (a rigid channel).

@@ -10,11 +10,6 @@
 
 namespace undula {
 
-double smooth_ramp(double t, double duration) {
-  if (t >= duration) return 1.0;
-  return t <= 0 ? 0.0 : 0.5 * (1 - std::cos(std::numbers::pi * t / duration));
-}
-
 double holder_displacement(const Scene& scene, double t) {
   const auto& point = scene.operating_point;
   return point.stroke_scale * point.stroke * smooth_ramp(t, scene.time.ramp_periods / point.frequency) *

@@ -3,12 +3,10 @@
 
 #include "fom/problem.hpp"
 #include "fom/scene/scene.hpp"
+#include "fom/smooth_ramp.hpp"
 #include "geometry/profile.hpp"
 
 namespace undula {
-
-/// Smooth start: 0 at t = 0, 1 from `duration` on, (1 - cos(pi t / duration)) / 2 between.
-double smooth_ramp(double t, double duration);
 
 /// Imposed displacement of the holder, Phi ramp(t) sin(2 pi f t), cm.
 double holder_displacement(const Scene& scene, double t);

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "fom/io/series_statistics.hpp"
 #include "fom/io/text_file.hpp"
 #include "fom/provenance.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -47,7 +48,7 @@ std::vector<std::string> probe_columns(const MembraneProbes& probes) {
 void remove_results(const std::filesystem::path& folder) {
   // Checkpoints first: at no moment could a restart mix two runs.
   std::filesystem::remove_all(checkpoint_folder(folder));
-  for (const char* name : {"cycle_means.csv", "envelope.csv", "timing.json"})
+  for (const char* name : {"cycle_means.csv", "envelope.csv", "statistics.csv", "timing.json"})
     std::filesystem::remove(folder / name);
 }
 
@@ -114,8 +115,8 @@ RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const S
     return state.step == 0 ? TimeSeriesFile::start(folder_ / name, std::move(columns))
                            : TimeSeriesFile::go_on(folder_ / name, std::move(columns), state.step);
   };
-  series_.emplace(table("time_series.csv", observation_columns()));
-  membrane_.emplace(table("membrane.csv", probe_columns(view_.probes)));
+  series_.emplace(table("time_series.csv", observation_columns(view_.rows)));
+  if (view_.rows.pump) membrane_.emplace(table("membrane.csv", probe_columns(view_.probes)));
   if (scene_.output.fields_every == 0) return;
   auto origin = provenance_;
   origin["scene"] = stamp_.text;
@@ -128,16 +129,24 @@ RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const S
 }
 
 void RunDirectory::record(const State& state, const Observation& seen) {
-  series_->append(state.step, observation_row(seen));
-  const Eigen::VectorXd axial_mm = view_.probes.axial * state.d[0] / units::cm_per_mm;
-  membrane_->append(state.step, {axial_mm.data(), static_cast<std::size_t>(axial_mm.size())});
+  series_->append(state.step, observation_row(seen, view_.rows));
+  if (membrane_) {
+    const Eigen::VectorXd axial_mm = view_.probes.axial_displacement(state.d[0]) / units::cm_per_mm;
+    membrane_->append(state.step, {axial_mm.data(), static_cast<std::size_t>(axial_mm.size())});
+  }
   const auto due = [&](int every) { return every > 0 && state.step % every == 0; };
   if (due(scene_.output.fields_every)) {
-    fluid_writer_->write(state.step, state.time, view_.fluid_fields(state));
+    const auto fields = view_.fluid_fields(state);
+    if (view_.moved_fluid) {
+      const FieldMesh<2> moved = view_.moved_fluid(state);
+      fluid_writer_->write(state.step, state.time, fields, &moved);
+    } else {
+      fluid_writer_->write(state.step, state.time, fields);
+    }
     solid_writer_->write(state.step, state.time, view_.solid_fields(state));
   }
   if (due(scene_.output.checkpoint_every)) save_state(state);
-  if (due(scene_.time.steps_per_period)) write_summaries();
+  if (view_.rows.pump && due(scene_.time.steps_per_period)) write_summaries();
 }
 
 std::filesystem::path RunDirectory::save_state(const State& state) {
@@ -162,6 +171,8 @@ void RunDirectory::write_summaries() const {
 
 void RunDirectory::finish(const State& state, const PhaseTimer& timer) {
   save_state(state);
+  if (!view_.rows.pump)
+    write_statistics(series_statistics(series(), scene_.output.statistics_from), folder_ / "statistics.csv");
   std::string text = "{\n  \"last_step\": " + std::to_string(state.step) + ",\n  \"phases\": {";
   const char* separator = "\n";
   for (const auto& [phase, record] : timer.records()) {

@@ -1,6 +1,9 @@
 // Everything a run leaves on disk:
 //   scene_resolved.toml   the scene in force; its first line ties the folder to the scene
 //   time_series.csv       one row per step, see step_table.hpp
+//   statistics.csv        of scenes that state their problem: last value, mean, amplitude and frequency of
+//   every
+//                         column; such scenes have none of the next three files
 //   membrane.csv          axial displacement of the membrane at its probes, one row per step
 //   cycle_means.csv       mean, lowest and highest of every column of time_series.csv, one row per period
 //   envelope.csv          radius_mm, low_mm, high_mm: reach of the membrane over the last complete period
@@ -55,7 +58,9 @@ public:
   const std::filesystem::path& folder() const { return folder_; }
   const LevelView& view() const { return view_; }
   const TimeSeries& series() const { return series_->table(); }
-  const TimeSeries& membrane() const { return membrane_->table(); } ///< cm -> mm, one column per probe
+  const TimeSeries& membrane() const {
+    return membrane_->table();
+  } ///< cm -> mm, one column per probe; pumps only
 
 private:
   void write_summaries() const;

@@ -2,6 +2,7 @@
 
 #include "fom/moving/moving_stepper.hpp"
 #include "fom/pump_problem.hpp"
+#include "fom/scene_problem.hpp"
 
 namespace undula {
 
@@ -10,28 +11,27 @@ std::unique_ptr<PreparedScene> prepare_scene(const Scene& scene, MPI_Comm comm, 
   FsiProblem<2> problem;
   {
     const auto scope = timer.measure("mesh");
-    problem = pump_problem(scene);
+    problem = scene_problem(scene);
   }
   {
     const auto scope = timer.measure("cut");
     prepared->disc = discretise(std::move(problem), CutOptions{});
   }
   prepared->operators = build_operators(prepared->disc, comm, timer);
-  prepared->observation = plan_observation(prepared->disc, membrane_probe_count);
+  const bool stated = scene.problem.stated;
+  prepared->observation = plan_observation(prepared->disc, stated ? 0 : membrane_probe_count);
+  if (stated) prepared->observation.stated = plan_stated_observables(prepared->disc, scene);
   return prepared;
 }
 
 void set_operating_point(PreparedScene& prepared, const Scene& scene) {
+  if (scene.problem.stated) return; // its conditions are expressions of its own
   auto& problem = prepared.disc.problem;
   problem.boundary.at(outlet_name).pressure = [scene](double t) { return outlet_pressure(scene, t); };
   for (auto& body : problem.solids)
     body.imposed_displacement = [scene](const Point<2>&, double t) {
       return Point<2>(0.0, holder_displacement(scene, t));
     };
-}
-
-double time_step(const Scene& scene) {
-  return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);
 }
 
 namespace {
@@ -56,7 +56,7 @@ void step_and_observe(PreparedScene& prepared, int last, State& state, PhaseTime
 
 void march(PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer& timer,
            const StepCallback& on_step) {
-  const int last = scene.time.periods * scene.time.steps_per_period;
+  const int last = last_step(scene);
   if (scene.coupling == Coupling::fixed) {
     TimeStepper<2> stepper(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
                            scene.time.factor_every, timer, scene.time.newton);

@@ -6,6 +6,7 @@
 
 #include "fom/observables.hpp"
 #include "fom/scene/scene.hpp"
+#include "fom/scene_problem.hpp"
 
 namespace undula {
 
@@ -25,9 +26,6 @@ std::unique_ptr<PreparedScene> prepare_scene(const Scene& scene, MPI_Comm comm, 
 
 /// Points the conditions of a prepared scene to another operating point (and ramp) of the same scene.
 void set_operating_point(PreparedScene& prepared, const Scene& scene);
-
-/// Time step of the scene: one period / steps_per_period, s.
-double time_step(const Scene& scene);
 
 /// Called after every step on every rank.
 using StepCallback = std::function<void(const State&, const Observation&)>;

@@ -11,32 +11,47 @@ constexpr double mW_per_erg_per_s = 1e-4;
 constexpr double uJ_per_erg = 0.1;
 constexpr double mW_per_uJ_per_s = 1e-3;
 
+enum class In { all, pump, stated };
+
 struct Column {
   const char* name;
   double (*value)(const Observation&);
+  In in = In::all;
+  bool extensive = false; ///< a power or an energy: in plane space per cm of depth
 };
 
 constexpr Column columns[] = {
     {"time_s", [](const Observation& o) { return o.time; }},
-    {"outflow_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.outflow); }},
-    {"inflow_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.inflow); }},
-    {"hydraulic_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.hydraulic_power; }},
-    {"holder_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.holder; }},
-    {"opening_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.opening; }},
-    {"viscous_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.viscous; }},
-    {"stabilisation_power_mW",
-     [](const Observation& o) { return mW_per_erg_per_s * o.energy.stabilisation; }},
-    {"damping_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.damping; }},
-    {"carried_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.carried; }},
-    {"kinetic_energy_uJ", [](const Observation& o) { return uJ_per_erg * o.energy.kinetic; }},
-    {"elastic_energy_uJ", [](const Observation& o) { return uJ_per_erg * o.energy.elastic; }},
+    {"outflow_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.outflow); }, In::pump},
+    {"inflow_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.inflow); }, In::pump},
+    {"hydraulic_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.hydraulic_power; },
+     In::pump},
+    {"holder_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.holder; }, In::all,
+     true},
+    {"boundary_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.boundary; },
+     In::stated, true},
+    {"body_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.body; }, In::stated,
+     true},
+    {"opening_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.opening; }, In::all,
+     true},
+    {"viscous_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.viscous; }, In::all,
+     true},
+    {"stabilisation_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.stabilisation; },
+     In::all, true},
+    {"damping_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.damping; }, In::all,
+     true},
+    {"carried_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.carried; }, In::all,
+     true},
+    {"kinetic_energy_uJ", [](const Observation& o) { return uJ_per_erg * o.energy.kinetic; }, In::all, true},
+    {"elastic_energy_uJ", [](const Observation& o) { return uJ_per_erg * o.energy.elastic; }, In::all, true},
     {"speed_max_cm_per_s", [](const Observation& o) { return o.speed_max; }},
     {"wall_shear_max_dyn_per_cm2", [](const Observation& o) { return o.wall_shear_max; }},
     {"wall_shear_mean_dyn_per_cm2", [](const Observation& o) { return o.wall_shear_mean; }},
     {"clearance_min_mm", [](const Observation& o) { return units::length_to_mm(o.clearance_min); }},
-    {"tip_displacement_mm", [](const Observation& o) { return units::length_to_mm(o.tip_displacement); }},
+    {"tip_displacement_mm", [](const Observation& o) { return units::length_to_mm(o.tip_displacement); },
+     In::pump},
     {"holder_displacement_mm",
-     [](const Observation& o) { return units::length_to_mm(o.holder_displacement); }},
+     [](const Observation& o) { return units::length_to_mm(o.holder_displacement); }, In::pump},
 };
 
 /// Values of a table by the name of their column.
@@ -54,15 +69,21 @@ private:
 
 } // namespace
 
-std::vector<std::string> observation_columns() {
+std::vector<std::string> observation_columns(const RowLayout& layout) {
   std::vector<std::string> names;
-  for (const auto& column : columns) names.emplace_back(column.name);
+  for (const auto& column : columns)
+    if (column.in == In::all || (column.in == In::pump) == layout.pump)
+      names.push_back(column.name + std::string(column.extensive && layout.per_depth ? "_per_cm" : ""));
+  for (const auto& column : layout.stated) names.push_back(column.name);
   return names;
 }
 
-std::vector<double> observation_row(const Observation& seen) {
+std::vector<double> observation_row(const Observation& seen, const RowLayout& layout) {
   std::vector<double> values;
-  for (const auto& column : columns) values.push_back(column.value(seen));
+  for (const auto& column : columns)
+    if (column.in == In::all || (column.in == In::pump) == layout.pump) values.push_back(column.value(seen));
+  for (std::size_t i = 0; i < layout.stated.size(); ++i)
+    values.push_back(seen.stated[i] / layout.stated[i].cgs_per_unit);
   return values;
 }
 

@@ -6,11 +6,18 @@
 
 namespace undula {
 
+/// What a row of a time series holds: that of a pump, or that of a scene that states its problem.
+struct RowLayout {
+  bool pump = true;
+  bool per_depth = false; ///< plane: powers and energies per cm of depth
+  std::vector<StatedColumn> stated;
+};
+
 /// Columns of time_series.csv, without "step".
-std::vector<std::string> observation_columns();
+std::vector<std::string> observation_columns(const RowLayout& layout = {});
 
 /// One value per column.
-std::vector<double> observation_row(const Observation& seen);
+std::vector<double> observation_row(const Observation& seen, const RowLayout& layout = {});
 
 /// What one period comes to. Flows in l/min.
 struct PeriodSummary {
@@ -26,7 +33,7 @@ struct PeriodSummary {
   double clearance_min_mm = 0;
 };
 
-/// The complete periods of a table with observation_columns.
+/// The complete periods of a pump's table with observation_columns.
 std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_per_period);
 
 } // namespace undula

@@ -56,6 +56,14 @@ State initial_state(const Discretisation<dim>& disc) {
   State state;
   for (auto* levels : {&state.x, &state.d})
     for (auto& level : *levels) level = Eigen::VectorXd::Zero(disc.unknowns());
+  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
+    const auto& velocity = disc.problem.solids[s].initial_velocity;
+    if (!velocity) continue;
+    const auto& nodes = disc.solid_spaces[s].nodes;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      state.x[0].template segment<dim>(disc.solid_unknown(static_cast<int>(s), static_cast<int>(i), 0)) =
+          velocity(nodes[i], 0.0);
+  }
   return state;
 }
 

@@ -24,7 +24,7 @@ struct State {
   std::array<Eigen::VectorXd, 2> map; ///< cm, DomainMap::displacement at both levels; empty: identity
 };
 
-/// Rest.
+/// Rest, but for the initial velocities of the solids.
 template <int dim>
 State initial_state(const Discretisation<dim>& disc);
 

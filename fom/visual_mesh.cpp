@@ -38,6 +38,16 @@ FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
   return picture;
 }
 
+template <int dim>
+FluidPicture<dim> moved_picture(const Discretisation<dim>& disc) {
+  auto picture = fluid_picture(disc);
+  if (disc.map.is_identity()) return picture;
+  for (std::size_t p = 0; p < picture.nodes.size(); ++p)
+    for (int k = 0; k <= dim; ++k)
+      picture.mesh.points[p] += picture.weights[p][k] * disc.map.displacement[picture.nodes[p][k]];
+  return picture;
+}
+
 FieldMesh<2> solid_picture(const Discretisation<2>& disc) {
   FieldMesh<2> mesh;
   for (const auto& space : disc.solid_spaces) {
@@ -79,6 +89,7 @@ std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const Stat
 }
 
 template FluidPicture<2> fluid_picture(const Discretisation<2>&);
+template FluidPicture<2> moved_picture(const Discretisation<2>&);
 template std::vector<NodalField> fluid_fields(const Discretisation<2>&, const FluidPicture<2>&, const State&);
 template std::vector<NodalField> solid_fields(const Discretisation<2>&, const State&);
 

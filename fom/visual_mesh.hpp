@@ -23,6 +23,10 @@ struct FluidPicture {
 template <int dim>
 FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc);
 
+/// The same with its points where the map of the domain takes them.
+template <int dim>
+FluidPicture<dim> moved_picture(const Discretisation<dim>& disc);
+
 /// The quadratic nodes of all solids, one after the other; every element split into four triangles through
 /// its edge mid-points.
 FieldMesh<2> solid_picture(const Discretisation<2>& disc);

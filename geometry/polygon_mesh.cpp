@@ -97,6 +97,48 @@ void check(const TaggedPolygon& polygon) {
         polygon.names.empty() ? "polygon" : "polygon with boundary '" + polygon.names.front() + "'");
 }
 
+/// A point inside a simple polygon: half-way between the first two crossings of a level between its corners.
+Kernel::Point_2 point_inside(const std::vector<Point<2>>& points) {
+  std::vector<double> levels;
+  for (const auto& x : points) levels.push_back(x.y());
+  std::sort(levels.begin(), levels.end());
+  double level = 0, widest = -1;
+  for (std::size_t i = 0; i + 1 < levels.size(); ++i)
+    if (levels[i + 1] - levels[i] > widest) {
+      widest = levels[i + 1] - levels[i];
+      level = 0.5 * (levels[i] + levels[i + 1]);
+    }
+  std::vector<double> crossings;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto &a = points[i], &b = points[(i + 1) % points.size()];
+    if ((a.y() > level) != (b.y() > level))
+      crossings.push_back(a.x() + (b.x() - a.x()) * (level - a.y()) / (b.y() - a.y()));
+  }
+  std::sort(crossings.begin(), crossings.end());
+  return {0.5 * (crossings[0] + crossings[1]), level};
+}
+
+/// The corners of a hole, clockwise: with the meshed side to the left of its edges.
+std::vector<Point<2>> clockwise_hole(const TaggedHole& hole, const TaggedPolygon& outside) {
+  std::vector<Kernel::Point_2> points, outline;
+  for (const auto& x : hole.points) points.emplace_back(x.x(), x.y());
+  for (const auto& x : outside.points) outline.emplace_back(x.x(), x.y());
+  const std::string where = "hole with boundary '" + outside.names[hole.tag] + "'";
+  if (points.size() < 3 || !CGAL::is_simple_2(points.begin(), points.end(), Kernel()))
+    throw InputError("a hole cannot be meshed", std::to_string(points.size()) + " points", "a simple polygon",
+                     where);
+  for (const auto& x : points)
+    if (CGAL::bounded_side_2(outline.begin(), outline.end(), x, Kernel()) != CGAL::ON_BOUNDED_SIDE) {
+      std::ostringstream seen;
+      seen << "corner (" << x.x() << ", " << x.y() << ") cm";
+      throw InputError("a hole is not inside of its polygon", seen.str(), "corners strictly inside", where);
+    }
+  auto result = hole.points;
+  if (CGAL::orientation_2(points.begin(), points.end(), Kernel()) == CGAL::COUNTERCLOCKWISE)
+    std::reverse(result.begin(), result.end());
+  return result;
+}
+
 /// Numbers the vertices along a Hilbert curve and fills points and cells. Returns the new index of the
 /// vertices given by handle.
 void fill_cells(Triangulation& triangulation, SimplexMesh<2>& mesh) {
@@ -128,30 +170,45 @@ void fill_cells(Triangulation& triangulation, SimplexMesh<2>& mesh) {
   std::sort(mesh.cells.begin(), mesh.cells.end());
 }
 
-/// Walks along the boundary from each point of the polygon to the next: exact even where split points are
-/// rounded off the straight edge.
-void fill_boundary(const TaggedPolygon& polygon, const std::vector<Triangulation::Vertex_handle>& corners,
-                   SimplexMesh<2>& mesh) {
+using Corners = std::vector<Triangulation::Vertex_handle>;
+
+/// The boundary edge that starts at each point, by its end; -1 for points inside.
+std::vector<int> next_on_boundary(const SimplexMesh<2>& mesh) {
   std::map<std::array<int, 2>, int> edges; // directed edge -> its cells
   for (const auto& cell : mesh.cells)
     for (int i = 0; i < 3; ++i) ++edges[{cell[i], cell[(i + 1) % 3]}];
   std::vector<int> next(mesh.points.size(), -1);
   for (const auto& [edge, count] : edges)
     if (!edges.contains({edge[1], edge[0]})) next[edge[0]] = edge[1];
+  return next;
+}
 
-  mesh.boundary_names = polygon.names;
+/// Walks along the boundary from each corner to the next: exact even where split points are rounded off the
+/// straight edge.
+template <typename TagOfEdge>
+void add_boundary(const Corners& corners, const std::vector<int>& next, const TagOfEdge& tag,
+                  SimplexMesh<2>& mesh) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const int end = corners[(i + 1) % corners.size()]->info();
     for (int at = corners[i]->info(); at != end; at = next[at]) {
-      if (next[at] < 0 || mesh.boundary.size() > mesh.points.size()) {
+      if (at < 0 || next[at] < 0 || mesh.boundary.size() > mesh.points.size()) {
         std::ostringstream where;
-        where << "edge " << i << " of the polygon, from (" << polygon.points[i].transpose() << ")";
+        where << "edge " << i << " of the polygon, from (" << corners[i]->point() << ")";
         throw NumericsError("the mesh lost an edge of its polygon", where.str(),
                             "a coarser size or a smaller angle bound");
       }
-      mesh.boundary.push_back({{at, next[at]}, polygon.tags[i]});
+      mesh.boundary.push_back({{at, next[at]}, tag(i)});
     }
   }
+}
+
+/// Inserts a closed polygon and its edges.
+Corners insert_loop(Triangulation& triangulation, const std::vector<Point<2>>& points) {
+  Corners corners;
+  for (const auto& x : points) corners.push_back(triangulation.insert(Kernel::Point_2(x.x(), x.y())));
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    triangulation.insert_constraint(corners[i], corners[(i + 1) % corners.size()]);
+  return corners;
 }
 
 } // namespace
@@ -159,18 +216,35 @@ void fill_boundary(const TaggedPolygon& polygon, const std::vector<Triangulation
 SimplexMesh<2> mesh_polygon(const TaggedPolygon& polygon, const SizeField& size, double min_angle) {
   check(polygon);
   Triangulation triangulation;
-  std::vector<Triangulation::Vertex_handle> corners;
-  for (const auto& x : polygon.points) corners.push_back(triangulation.insert(Kernel::Point_2(x.x(), x.y())));
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    triangulation.insert_constraint(corners[i], corners[(i + 1) % corners.size()]);
+  const Corners corners = insert_loop(triangulation, polygon.points);
   for (const auto& line : polygon.inner_lines)
     triangulation.insert_constraint(corners[line[0]], corners[line[1]]);
+  std::vector<Corners> holes;
+  std::vector<Kernel::Point_2> seeds;
+  for (const auto& hole : polygon.holes) {
+    holes.push_back(insert_loop(triangulation, clockwise_hole(hole, polygon)));
+    seeds.push_back(point_inside(hole.points));
+  }
+  for (const auto& path : polygon.inner_paths)
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
+      triangulation.insert_constraint(Kernel::Point_2(path[i].x(), path[i].y()),
+                                      Kernel::Point_2(path[i + 1].x(), path[i + 1].y()));
 
-  CGAL::refine_Delaunay_mesh_2(triangulation, Criteria(size, min_angle));
+  const Criteria criteria(size, min_angle);
+  if (seeds.empty())
+    CGAL::refine_Delaunay_mesh_2(triangulation, criteria);
+  else
+    CGAL::refine_Delaunay_mesh_2(triangulation, seeds.begin(), seeds.end(), criteria);
 
   SimplexMesh<2> mesh;
   fill_cells(triangulation, mesh);
-  fill_boundary(polygon, corners, mesh);
+  mesh.boundary_names = polygon.names;
+  const auto next = next_on_boundary(mesh);
+  add_boundary(
+      corners, next, [&](std::size_t edge) { return polygon.tags[edge]; }, mesh);
+  for (std::size_t h = 0; h < holes.size(); ++h)
+    add_boundary(
+        holes[h], next, [&](std::size_t) { return polygon.holes[h].tag; }, mesh);
   return mesh;
 }
 

@@ -63,7 +63,7 @@ ProjectedRun project_run(const PreparedScene& prepared, const Scene& scene, cons
     projected.velocity_norm[k] = full.dot(weighted);
     full.setZero();
     full(solid_rows) = displacement.col(first + k);
-    projected.probes.col(k) = prepared.observation.probes.axial * full;
+    projected.probes.col(k) = prepared.observation.probes.axial_displacement(full);
     const long step = std::lround(run.times[static_cast<std::size_t>(first + k)] / dt);
     projected.steps.push_back(static_cast<int>(step % scene.time.steps_per_period));
   }

@@ -50,8 +50,8 @@ rom::Operators project(const PreparedScene& prepared, const Bases& bases) {
                                     (compress(disc.unknowns(), entries) * bases.velocity));
   }
   const auto& probes = prepared.observation.probes;
-  reduced.envelope = probes.axial * bases.displacement;
-  reduced.envelope_imposed = probes.axial * lifting;
+  reduced.envelope = probes.axial * bases.displacement.bottomRows(probes.axial.cols());
+  reduced.envelope_imposed = probes.axial * lifting.tail(probes.axial.cols());
   reduced.envelope_radius = Eigen::Map<const Eigen::VectorXd>(
       probes.radius.data(), static_cast<Eigen::Index>(probes.radius.size()));
   return reduced;

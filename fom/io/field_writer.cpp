@@ -26,6 +26,16 @@ void write_header(Hdf5File& file, const std::map<std::string, std::string>& prov
   for (const auto& [key, text] : provenance) file.write_text("provenance/" + key, text);
 }
 
+template <int dim>
+void check_cells(const FieldMesh<dim>& mesh, const std::string& where) {
+  const auto count = static_cast<int>(mesh.points.size());
+  for (const auto& cell : mesh.cells)
+    for (const int point : cell)
+      if (point < 0 || point >= count)
+        throw InputError("a cell to draw names a point that does not exist", std::to_string(point),
+                         "0 to " + std::to_string(count - 1), where);
+}
+
 /// [n][dim] -> [n][3]
 template <int dim>
 std::vector<double> three_components(std::span<const double> values) {
@@ -34,6 +44,16 @@ std::vector<double> three_components(std::span<const double> values) {
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < dim; ++k) result[3 * i + k] = values[dim * i + k];
   return result;
+}
+
+template <int dim>
+void write_points_and_cells(Hdf5File& file, const FieldMesh<dim>& mesh) {
+  std::vector<double> points;
+  for (const auto& point : mesh.points) points.insert(points.end(), point.data(), point.data() + dim);
+  std::vector<int> cells;
+  for (const auto& cell : mesh.cells) cells.insert(cells.end(), cell.begin(), cell.end());
+  file.write("points", std::span<const double>(three_components<dim>(points)), {mesh.points.size(), 3}, "cm");
+  file.write("cells", std::span<const int>(cells), {mesh.cells.size(), dim + 1});
 }
 
 } // namespace
@@ -46,12 +66,7 @@ FieldWriter<dim>::FieldWriter(std::filesystem::path folder, const std::string& n
       provenance_(provenance),
       series_{name, name + "_mesh.h5", dim, mesh.points.size(), mesh.cells.size(), {}} {
   check_name(name, folder_.string());
-  const auto count = static_cast<int>(series_.points);
-  for (const auto& cell : mesh.cells)
-    for (const int point : cell)
-      if (point < 0 || point >= count)
-        throw InputError("a cell to draw names a point that does not exist", std::to_string(point),
-                         "0 to " + std::to_string(count - 1), "field series " + name);
+  check_cells(mesh, "field series " + name);
   std::filesystem::create_directories(folder_);
 }
 
@@ -87,25 +102,32 @@ FieldWriter<dim> FieldWriter<dim>::go_on(const std::filesystem::path& folder, co
 }
 
 template <int dim>
-void FieldWriter<dim>::write(int step, double time, std::span<const NodalField> fields) {
+void FieldWriter<dim>::write(int step, double time, std::span<const NodalField> fields,
+                             const FieldMesh<dim>* mesh) {
   const auto where = "field series " + series_.name + ", step " + std::to_string(step);
   const int last = series_.steps.empty() ? -1 : series_.steps.back().step;
   if (step <= last)
     throw InputError("steps of a field series must rise", std::to_string(step),
                      "later than " + std::to_string(last), where);
   XdmfStep entry{step, time, series_.name + "_" + std::to_string(step) + ".h5", {}};
+  if (mesh != nullptr) {
+    check_cells(*mesh, where);
+    entry.points = mesh->points.size();
+    entry.cells = mesh->cells.size();
+  }
+  const std::size_t points = mesh != nullptr ? entry.points : series_.points;
   std::set<std::string> names;
   for (const auto& field : fields) {
     check_name(field.name, where);
     const bool vector = field.components == dim;
     if ((field.components != 1 && !vector) ||
-        field.values.size() != series_.points * static_cast<std::size_t>(field.components) ||
+        field.values.size() != points * static_cast<std::size_t>(field.components) ||
         !names.insert(field.name).second)
       throw InputError("field \"" + field.name + "\" does not fit the mesh",
                        std::to_string(field.values.size()) + " values of " +
                            std::to_string(field.components) + " components",
                        "a name used once, 1 or " + std::to_string(dim) + " components on " +
-                           std::to_string(series_.points) + " points",
+                           std::to_string(points) + " points",
                        where);
     entry.fields.push_back({field.name, field.unit, vector});
   }
@@ -117,11 +139,11 @@ void FieldWriter<dim>::write(int step, double time, std::span<const NodalField> 
   for (const auto& field : fields) {
     const auto path = "fields/" + field.name;
     if (field.components == 1)
-      file.write(path, std::span(field.values), {series_.points}, field.unit);
+      file.write(path, std::span(field.values), {points}, field.unit);
     else
-      file.write(path, std::span<const double>(three_components<dim>(field.values)), {series_.points, 3},
-                 field.unit);
+      file.write(path, std::span<const double>(three_components<dim>(field.values)), {points, 3}, field.unit);
   }
+  if (mesh != nullptr) write_points_and_cells(file, *mesh);
   file.commit();
   series_.steps.push_back(std::move(entry));
   write_index();
@@ -149,12 +171,17 @@ XdmfStep FieldWriter<dim>::read_step(const std::filesystem::path& path) const {
                  file.read_attribute<double>("/", "time"),
                  path.filename().string(),
                  {}};
+  if (file.exists("points")) {
+    entry.points = file.extents("points")[0];
+    entry.cells = file.extents("cells")[0];
+  }
+  const std::size_t points = entry.points > 0 ? entry.points : series_.points;
   for (const auto& name : file.children("fields")) {
     const auto extents = file.extents("fields/" + name);
-    if (extents.empty() || extents[0] != series_.points)
+    if (extents.empty() || extents[0] != points)
       throw InputError("the field series was written on another mesh",
                        std::to_string(extents.empty() ? 1 : extents[0]) + " points",
-                       std::to_string(series_.points) + " points", path.string());
+                       std::to_string(points) + " points", path.string());
     entry.fields.push_back({name, file.unit("fields/" + name), extents.size() == 2});
   }
   return entry;
@@ -162,14 +189,9 @@ XdmfStep FieldWriter<dim>::read_step(const std::filesystem::path& path) const {
 
 template <int dim>
 void FieldWriter<dim>::write_mesh(const FieldMesh<dim>& mesh) const {
-  std::vector<double> points;
-  for (const auto& point : mesh.points) points.insert(points.end(), point.data(), point.data() + dim);
-  std::vector<int> cells;
-  for (const auto& cell : mesh.cells) cells.insert(cells.end(), cell.begin(), cell.end());
   auto file = Hdf5File::create(folder_ / series_.mesh_file);
   write_header(file, provenance_);
-  file.write("points", std::span<const double>(three_components<dim>(points)), {series_.points, 3}, "cm");
-  file.write("cells", std::span<const int>(cells), {series_.cells, dim + 1});
+  write_points_and_cells(file, mesh);
   file.commit();
 }
 

@@ -46,9 +46,9 @@ public:
                            const FieldMesh<dim>& mesh, const std::map<std::string, std::string>& provenance,
                            int last_step);
 
-  /// Adds one time, in s. Throws InputError for fields that do not fit the mesh, a name given twice or a step
-  /// that is not later than the last one.
-  void write(int step, double time, std::span<const NodalField> fields);
+  /// Adds one time, in s, on the mesh of the series or on one of its own (`mesh`). Throws InputError for
+  /// fields that do not fit the mesh, a name given twice or a step that is not later than the last one.
+  void write(int step, double time, std::span<const NodalField> fields, const FieldMesh<dim>* mesh = nullptr);
 
 private:
   FieldWriter(std::filesystem::path folder, const std::string& name, const FieldMesh<dim>& mesh,

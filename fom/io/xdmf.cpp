@@ -25,13 +25,15 @@ std::string data_item(const std::string& extents, bool real, const std::string& 
          "\" Precision=\"" + (real ? "8" : "4") + "\" Format=\"HDF\">" + escaped(source) + "</DataItem>\n";
 }
 
-std::string mesh_text(const XdmfSeries& series) {
-  const auto cells = std::to_string(series.cells);
+std::string mesh_text(const XdmfSeries& series, const XdmfStep& step) {
+  const bool own = step.points > 0;
+  const auto& file = own ? step.file : series.mesh_file;
+  const auto cells = std::to_string(own ? step.cells : series.cells);
   return "        <Topology TopologyType=\"" + std::string(series.dim == 2 ? "Triangle" : "Tetrahedron") +
          "\" NumberOfElements=\"" + cells + "\">\n          " +
-         data_item(cells + " " + std::to_string(series.dim + 1), false, series.mesh_file + ":/cells") +
+         data_item(cells + " " + std::to_string(series.dim + 1), false, file + ":/cells") +
          "        </Topology>\n        <Geometry GeometryType=\"XYZ\">\n          " +
-         data_item(std::to_string(series.points) + " 3", true, series.mesh_file + ":/points") +
+         data_item(std::to_string(own ? step.points : series.points) + " 3", true, file + ":/points") +
          "        </Geometry>\n";
 }
 
@@ -49,14 +51,14 @@ std::string field_text(const XdmfField& field, const XdmfStep& step, std::size_t
 
 std::string xdmf_text(const XdmfSeries& series) {
   const auto name = escaped(series.name);
-  const auto mesh = mesh_text(series);
   std::string text =
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"" +
       name + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (const auto& step : series.steps) {
     text += "      <Grid Name=\"" + name + "\" GridType=\"Uniform\">\n        <Time Value=\"" +
-            exact_number(step.time) + "\"/>\n" + mesh;
-    for (const auto& field : step.fields) text += field_text(field, step, series.points);
+            exact_number(step.time) + "\"/>\n" + mesh_text(series, step);
+    for (const auto& field : step.fields)
+      text += field_text(field, step, step.points > 0 ? step.points : series.points);
     text += "      </Grid>\n";
   }
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";

@@ -17,9 +17,12 @@ struct XdmfStep {
   double time = 0;  ///< s
   std::string file; ///< relative to the index
   std::vector<XdmfField> fields;
+  /// Extents of a mesh of its own, in `file` as the series' mesh is in its; 0: the mesh of the series.
+  std::size_t points = 0, cells = 0;
 };
 
-/// A mesh that does not change, in the HDF5 file `mesh_file` as /points (n x 3) and /cells (m x (dim + 1)).
+/// A mesh for all steps that have none of their own, in the HDF5 file `mesh_file` as /points (n x 3) and
+/// /cells (m x (dim + 1)).
 struct XdmfSeries {
   std::string name;
   std::string mesh_file; ///< relative to the index

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fom/scene/problem_statement.hpp"
+
 namespace undula {
 
 enum class Space { plane, axisymmetric, thin_gap };
@@ -109,6 +111,8 @@ struct TimeSettings {
   int steps_per_period = 0;
   int periods = 0;
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
+  double step = 0;         ///< s, of scenes without an actuator (Scene::problem.stated)
+  double end = 0;          ///< s, of the same
   int factor_every = 1;    ///< steps that share one factorisation; the rest is left to GMRES
   NewtonSettings newton;
   MotionSettings motion;
@@ -165,8 +169,9 @@ struct TrainingPlan {
 };
 
 struct OutputSettings {
-  int fields_every = 0;     ///< steps between field files, 0: none
-  int checkpoint_every = 0; ///< steps between checkpoints, 0: none
+  int fields_every = 0;       ///< steps between field files, 0: none
+  int checkpoint_every = 0;   ///< steps between checkpoints, 0: none
+  double statistics_from = 0; ///< s, where the window of the statistics begins (Scene::problem.stated)
 };
 
 struct Scene {
@@ -177,6 +182,7 @@ struct Scene {
   std::vector<std::filesystem::path> solid_meshes;
   double clearance_scale = 1; ///< of the clearances between membrane and flanges in the profile
   double rim_gap_scale = 1;   ///< of the gap between the membrane's rim and the housing in the profile
+  ProblemStatement problem;   ///< in place of a pump
   Space space = Space::axisymmetric;
   Extent extent = Extent::full;
   Coupling coupling = Coupling::fixed;

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "fom/scene/statement_checks.hpp"
 
 namespace undula {
 namespace {
@@ -155,6 +156,11 @@ void check_training(const Scene& scene, const std::string& where) {
 } // namespace
 
 void check_consistency(const Scene& scene, const std::string& where) {
+  if (scene.problem.stated) {
+    check_statement(scene, where);
+    check_contact(scene, where);
+    return;
+  }
   check_geometry(scene, where);
   check_clamp(scene, where);
   check_levels(scene, where);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "fom/scene/entry_table.hpp"
+
 namespace undula {
 namespace {
 
@@ -25,12 +27,18 @@ bool is_unit(std::string_view text) {
   return std::find(foreign_units.begin(), foreign_units.end(), text) != foreign_units.end();
 }
 
+/// The keys a path may mean: those of its entry, [body.flag], or of the table.
+std::span<const SceneKey> keys_around(std::string_view path) {
+  const EntryName entry = entry_of(path);
+  return entry ? entry_keys(entry.kind, entry.name) : scene_table();
+}
+
 /// The nearest of the keys that `counts` accepts.
 template <typename Counts>
 const SceneKey& nearest_among(std::string_view path, const Counts& counts) {
   const SceneKey* nearest = nullptr;
   int least = std::numeric_limits<int>::max();
-  for (const SceneKey& key : scene_table()) {
+  for (const SceneKey& key : keys_around(path)) {
     // One more than the leaves' distance, so that a key of the section at hand is preferred.
     const int elsewhere = edit_distance(leaf_of(path), leaf_of(key.path)) + 1;
     const int distance = std::min(edit_distance(path, key.path), elsewhere);
@@ -39,7 +47,8 @@ const SceneKey& nearest_among(std::string_view path, const Counts& counts) {
       nearest = &key;
     }
   }
-  return *nearest;
+  // An entry may have none that counts.
+  return nearest != nullptr || !entry_of(path) ? *nearest : nearest_among(leaf_of(path), counts);
 }
 
 } // namespace
@@ -62,14 +71,14 @@ int edit_distance(std::string_view a, std::string_view b) {
 }
 
 const SceneKey* find_key(std::string_view path) {
-  const auto table = scene_table();
+  const auto table = keys_around(path);
   const auto found =
       std::find_if(table.begin(), table.end(), [&](const SceneKey& key) { return key.path == path; });
   return found == table.end() ? nullptr : &*found;
 }
 
 const SceneKey* same_quantity(std::string_view path) {
-  for (const SceneKey& key : scene_table()) {
+  for (const SceneKey& key : keys_around(path)) {
     if (key.unit.empty()) {
       continue;
     }

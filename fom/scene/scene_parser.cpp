@@ -1,6 +1,8 @@
 // read_scene and parse_scene: TOML nodes to fields of a scene, by the table.
 #include <toml++/toml.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -8,6 +10,8 @@
 #include <type_traits>
 
 #include "base/error.hpp"
+#include "fom/scene/entry_table.hpp"
+#include "fom/scene/expression.hpp"
 #include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_key_search.hpp"
@@ -47,9 +51,28 @@ std::string seen_text(const toml::node& node) {
 /// Fills one scene from the file and the overrides.
 class SceneParser {
 public:
+  /// The whole file.
+  void read_file(const toml::table& file, const Origin& origin) {
+    scene.problem.stated = file.contains("domain") || file.contains("body");
+    // What expressions depend on comes first.
+    toml::table first, rest = file;
+    for (const char* section : {constants_section, "model"}) {
+      if (const toml::node* node = file.get(section)) {
+        first.insert(section, *node);
+        rest.erase(section);
+      }
+    }
+    read_table(first, "", origin);
+    read_table(rest, "", origin);
+  }
+
   void read_table(const toml::table& table, const std::string& prefix, const Origin& origin) {
     for (const auto& [key, node] : table) {
       const std::string path = prefix + std::string(key.str());
+      if (prefix.empty() && entry_of(path + ".NAME")) {
+        read_entries(path, node, origin.at(key.source()), origin);
+        continue;
+      }
       const bool section = prefix.empty() && is_section(path);
       if (section && node.is_table()) {
         read_table(*node.as_table(), path + ".", origin);
@@ -57,6 +80,7 @@ public:
         throw InputError(in_quotes(path) + " is a section, not a value", seen_text(node),
                          "a table, [" + path + "], with keys below it", origin.at(key.source()));
       } else if (const SceneKey* known = find_key(path)) {
+        check_scope(*known, path + " = " + seen_text(node), origin.at(key.source()));
         assign(*known, node, origin);
         given_.insert(path);
       } else {
@@ -75,13 +99,16 @@ public:
     }
     const std::string path = text.substr(0, equals);
     const std::string value = text.substr(equals + 1);
+    check_entry_exists(scene, path, origin.label);
     const SceneKey* key = find_key(path);
     if (key == nullptr) {
       refuse_unknown(path, text, false, origin.label);
     }
-    const bool is_text = std::holds_alternative<ChoiceKey>(key->value) ||
-                         std::holds_alternative<TextKey>(key->value) ||
-                         std::holds_alternative<FileKey>(key->value);
+    check_scope(*key, text, origin.label);
+    const bool is_text =
+        std::holds_alternative<ChoiceKey>(key->value) || std::holds_alternative<TextKey>(key->value) ||
+        std::holds_alternative<FileKey>(key->value) || std::holds_alternative<ExpressionKey>(key->value) ||
+        std::holds_alternative<NameKey>(key->value);
     if (is_text && value.front() != '"' && value.front() != '\'') {
       assign(*key, toml::value<std::string>(value), origin);
     } else {
@@ -93,7 +120,7 @@ public:
 
   /// Defaults for what was left out; refuses missing keys.
   void fill_defaults(const Origin& origin) {
-    for (const SceneKey& key : scene_table()) {
+    for (const SceneKey& key : keys_of(scene)) {
       if (given_.contains(key.path)) {
         continue;
       }
@@ -109,6 +136,8 @@ public:
         integer->field(scene) = *integer->fallback;
       } else if (const auto* choice = std::get_if<ChoiceKey>(&key.value)) {
         choose(key, *choice, choice->fallback, "the scene table");
+      } else if (const auto* expression = std::get_if<ExpressionKey>(&key.value)) {
+        expression->field(scene) = expression->fallback;
       }
     }
   }
@@ -130,6 +159,59 @@ private:
                      allowed_text(key), origin.label);
   }
 
+  /// [body.flag], [body.tail], ..., or the numbers of [constants].
+  void read_entries(const std::string& kind, const toml::node& node, const std::string& where,
+                    const Origin& origin) {
+    const bool constants = kind == constants_section;
+    if (!node.is_table()) {
+      throw InputError(in_quotes(kind) + " is a section, not a value", seen_text(node),
+                       constants ? "a table, [constants], with numbers below it"
+                                 : "tables with names, [" + kind + ".NAME], with keys below them",
+                       where);
+    }
+    for (const auto& [key, entry] : *node.as_table()) {
+      const std::string name(key.str());
+      const std::string at = origin.at(key.source());
+      if (!scene.problem.stated) {
+        throw InputError("section " + in_quotes(kind) + " makes no sense in a scene of a pump",
+                         kind + "." + name, "scenes with [domain] or [body.NAME]", at);
+      }
+      if (!constants && !entry.is_table()) {
+        throw InputError(in_quotes(kind + "." + name) + " stands outside of a named section",
+                         seen_text(entry), "keys below [" + kind + ".NAME]", at);
+      }
+      if (!is_free_name(name) && (constants || !is_plain_name(name))) {
+        throw InputError("this name cannot stand for " + std::string(constants ? "a constant" : "an entry"),
+                         in_quotes(name),
+                         constants ? "letters, digits and _, none of the names that expressions know"
+                                   : "letters, digits and _",
+                         at);
+      }
+      add_entry(scene, kind, name);
+      if (constants) {
+        const std::string path = kind + "." + name;
+        assign(*find_key(path), entry, origin);
+        given_.insert(path);
+      } else {
+        read_table(*entry.as_table(), kind + "." + name + ".", origin);
+      }
+    }
+  }
+
+  static bool is_plain_name(const std::string& name) {
+    return !name.empty() &&
+           std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+  }
+
+  void check_scope(const SceneKey& key, const std::string& seen, const std::string& where) const {
+    if (!key.applies_to(scene)) {
+      throw InputError("key " + in_quotes(key.path) + " does not apply to this scene", seen,
+                       key.scope == Scope::pump ? "scenes of a pump, without [domain] and [body.NAME]"
+                                                : "scenes with [domain] or [body.NAME]",
+                       where);
+    }
+  }
+
   [[noreturn]] static void refuse_unknown(const std::string& path, const std::string& seen, bool is_table,
                                           const std::string& where) {
     if (const SceneKey* key = same_quantity(path)) {
@@ -145,6 +227,10 @@ private:
           sections += (sections.empty() ? "[" : ", [") + section + "]";
         }
       }
+      for (const EntryKind& kind : entry_kinds()) {
+        sections += ", [" + kind.kind + ".NAME]";
+      }
+      sections += ", [" + std::string(constants_section) + "]";
       throw InputError("unknown section " + in_quotes(path), "[" + path + "]", sections, where);
     }
     throw InputError("unknown key " + in_quotes(path), seen,
@@ -248,6 +334,36 @@ private:
               }
               typed.field(scene).push_back(existing_file(key, *entry.value<std::string>(), origin, where));
             }
+          } else if constexpr (std::is_same_v<Type, NameListKey>) {
+            if (!node.is_array()) {
+              wrong_type();
+            }
+            typed.field(scene).clear();
+            for (const toml::node& entry : *node.as_array()) {
+              if (!entry.is_string()) {
+                wrong_type();
+              }
+              typed.field(scene).push_back(*entry.value<std::string>());
+            }
+          } else if constexpr (std::is_same_v<Type, PositionKey>) {
+            typed.field(scene) = position(key, node, typed.cgs_per_unit, where);
+          } else if constexpr (std::is_same_v<Type, PositionListKey>) {
+            if (!node.is_array()) {
+              wrong_type();
+            }
+            typed.field(scene).clear();
+            for (const toml::node& entry : *node.as_array()) {
+              typed.field(scene).push_back(position(key, entry, typed.cgs_per_unit, where));
+            }
+          } else if constexpr (std::is_same_v<Type, ExpressionKey>) {
+            typed.field(scene) = expression_text(key, node, where);
+          } else if constexpr (std::is_same_v<Type, ExpressionPairKey>) {
+            if (!node.is_array() || node.as_array()->size() != 2) {
+              wrong_type();
+            }
+            for (std::size_t i = 0; i < 2; ++i) {
+              typed.field(scene)[i] = expression_text(key, *node.as_array()->get(i), where);
+            }
           } else {
             if (!node.is_string()) {
               wrong_type();
@@ -258,11 +374,40 @@ private:
         key.value);
   }
 
+  static Position position(const SceneKey& key, const toml::node& node, double cgs_per_unit,
+                           const std::string& where) {
+    const toml::array* pair = node.as_array();
+    if (pair == nullptr || pair->size() != 2 || !pair->get(0)->is_number() || !pair->get(1)->is_number()) {
+      refuse_value(key, "has a point of the wrong form", seen_text(node), where);
+    }
+    Position result{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      result[i] = *pair->get(i)->value<double>() * cgs_per_unit;
+      if (!std::isfinite(result[i])) {
+        refuse_value(key, "has a point that is not finite", seen_text(node), where);
+      }
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::string expression_text(const SceneKey& key, const toml::node& node,
+                                            const std::string& where) const {
+    if (!node.is_string() && !node.is_number()) {
+      refuse_value(key, "has a value of the wrong type", seen_text(node), where);
+    }
+    std::string text = node.is_string() ? *node.value<std::string>() : shortest_number(*node.value<double>());
+    const Expression checked(text, scene.space, scene.problem.constants,
+                             where + ", key " + in_quotes(key.path));
+    return text;
+  }
+
   template <typename Type>
   void assign_text(const SceneKey& key, const Type& typed, const std::string& text, const Origin& origin,
                    const std::string& where) {
     if constexpr (std::is_same_v<Type, ChoiceKey>) {
       choose(key, typed, text, where);
+    } else if constexpr (std::is_same_v<Type, NameKey>) {
+      typed.field(scene) = text;
     } else if constexpr (std::is_same_v<Type, FileKey>) {
       typed.field(scene) = existing_file(key, text, origin, where);
     } else {
@@ -321,7 +466,7 @@ Scene parse_scene(std::string_view text, const std::string& origin_name, const s
   const Origin origin{origin_name, true, std::filesystem::absolute(base)};
   SceneParser parser;
   try {
-    parser.read_table(toml::parse(text), "", origin);
+    parser.read_file(toml::parse(text), origin);
   } catch (const toml::parse_error& error) {
     throw InputError("the scene is not valid TOML", std::string(error.description()),
                      "TOML 1.0, https://toml.io", origin.at(error.source()));

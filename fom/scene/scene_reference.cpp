@@ -1,5 +1,6 @@
 #include "fom/scene/scene_reference.hpp"
 
+#include "fom/scene/entry_table.hpp"
 #include "fom/scene/scene_table.hpp"
 
 namespace undula {
@@ -34,6 +35,17 @@ std::string default_cell(const SceneKey& key) {
   return text.empty() ? "none" : "`" + text + "`";
 }
 
+constexpr const char* table_head = "\n| key | accepts | default | meaning |\n|---|---|---|---|\n";
+
+std::string row(const SceneKey& key) {
+  const bool entry = static_cast<bool>(entry_of(key.path));
+  const char* scope = key.scope == Scope::any || entry ? ""
+                      : key.scope == Scope::pump       ? "(pump) "
+                                                       : "(stated) ";
+  return "| `" + key.leaf() + "`" + (key.shapes_state ? "" : " *") + " | " + cell(allowed_text(key)) + " | " +
+         cell(default_cell(key)) + " | " + scope + cell(key.help + planned_text(key)) + " |\n";
+}
+
 } // namespace
 
 std::string scene_reference() {
@@ -59,16 +71,32 @@ std::string scene_reference() {
       "  computed state; they are what error bands and calibration start from.\n"
       "- Every output records the resolved scene. Keys marked * may change when a run goes on from a "
       "checkpoint.\n";
+  page +=
+      "- Keys marked (pump) belong to scenes of a pump, whose geometry is a profile or meshes; keys marked "
+      "(stated) "
+      "to scenes with\n  `[domain]` or `[body.NAME]`, which state any other plane or axisymmetric problem.\n"
+      "- Expressions are arithmetic in `x`, `y` (plane) or `r`, `z` (axisymmetric) in mm, `t` in s, `pi`, "
+      "the\n"
+      "  names of `[constants]`, and `ramp(t, T)`, which rises smoothly from 0 at t = 0 to 1 at t = T; with "
+      "the "
+      "functions and\n  operators of muParser (`sin`, `exp`, `sqrt`, `min`, `^`, `<`, `&&`, `a ? b : c`, "
+      "...).\n";
   std::string section = "-";
   for (const SceneKey& key : scene_table()) {
     if (key.section() != section) {
       section = key.section();
       page += section.empty() ? "\n## Outside sections\n"
                               : "\n## [" + section + "]\n\n" + section_help(section) + "\n";
-      page += "\n| key | accepts | default | meaning |\n|---|---|---|---|\n";
+      page += table_head;
     }
-    page += "| `" + key.leaf() + "`" + (key.shapes_state ? "" : " *") + " | " + cell(allowed_text(key)) +
-            " | " + cell(default_cell(key)) + " | " + cell(key.help + planned_text(key)) + " |\n";
+    page += row(key);
+  }
+  page += "\n## [constants]\n\nNumbers that expressions use by name: `U = 20.0`. Stated scenes only.\n";
+  for (const EntryKind& kind : entry_kinds()) {
+    page += "\n## [" + kind.kind + ".NAME]\n\n" + kind.help + "\n" + table_head;
+    for (const SceneKey& key : entry_keys(kind.kind, "NAME")) {
+      page += row(key);
+    }
   }
   return page;
 }
@@ -77,6 +105,11 @@ std::string scene_keys_help() {
   std::string text = "Keys for --set key=value (all of docs/scene.md: undula check --reference):\n";
   for (const SceneKey& key : scene_table()) {
     text += "  " + key.path + ": " + allowed_text(key) + "\n";
+  }
+  for (const EntryKind& kind : entry_kinds()) {
+    for (const SceneKey& key : entry_keys(kind.kind, "NAME")) {
+      text += "  " + key.path + ": " + allowed_text(key) + "\n";
+    }
   }
   return text;
 }

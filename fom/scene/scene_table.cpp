@@ -1,5 +1,6 @@
 #include "fom/scene/scene_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <type_traits>
@@ -34,6 +35,23 @@ std::pair<std::string, int> name(const char* text, Enum value) {
 
 // A function that returns a reference to a member of a scene.
 #define FIELD(member) [](Scene& scene) -> decltype(auto) { return (scene.member); }
+
+std::vector<SceneKey> geometry_keys() {
+  return {
+      {"geometry.profile", "", "pump profile (TOML); a relative path starts at the scene file", shapes_state,
+       FileKey{FIELD(profile)}},
+      {"geometry.clearance_scale", "",
+       "factor on the clearances between membrane and flanges of the profile, by moving the flanges",
+       shapes_state, RealKey{FIELD(clearance_scale), 1, from_to(0.1, 10), 1.0}},
+      {"geometry.rim_gap_scale", "",
+       "factor on the gap between the membrane's rim and the housing of the profile, by moving the rim",
+       shapes_state, RealKey{FIELD(rim_gap_scale), 1, from_to(0.1, 10), 1.0}},
+      {"geometry.fluid_mesh", "", "Gmsh mesh of the fluid background, in place of a profile", shapes_state,
+       FileKey{FIELD(fluid_mesh)}},
+      {"geometry.solid_meshes", "", "Gmsh meshes of the solids, with `fluid_mesh`", shapes_state,
+       FileListKey{FIELD(solid_meshes)}},
+  };
+}
 
 std::vector<SceneKey> model_keys() {
   return {
@@ -88,27 +106,20 @@ std::vector<SceneKey> model_keys() {
        choice<FIELD(outlet)>({name("total-pressure", OpeningCondition::total_pressure),
                               name("static-pressure", OpeningCondition::static_pressure)},
                              {}, "total-pressure")},
-      {"geometry.profile", "", "pump profile (TOML); a relative path starts at the scene file", shapes_state,
-       FileKey{FIELD(profile)}},
-      {"geometry.clearance_scale", "",
-       "factor on the clearances between membrane and flanges of the profile, by moving the flanges",
-       shapes_state, RealKey{FIELD(clearance_scale), 1, from_to(0.1, 10), 1.0}},
-      {"geometry.rim_gap_scale", "",
-       "factor on the gap between the membrane's rim and the housing of the profile, by moving the rim",
-       shapes_state, RealKey{FIELD(rim_gap_scale), 1, from_to(0.1, 10), 1.0}},
-      {"geometry.fluid_mesh", "", "Gmsh mesh of the fluid background, in place of a profile", shapes_state,
-       FileKey{FIELD(fluid_mesh)}},
-      {"geometry.solid_meshes", "", "Gmsh meshes of the solids, with `fluid_mesh`", shapes_state,
-       FileListKey{FIELD(solid_meshes)}},
   };
 }
 
-std::vector<SceneKey> physics_keys() {
+std::vector<SceneKey> fluid_keys() {
   return {
       {"fluid.density_g_per_cm3", "g_per_cm3", "density of the fluid", shapes_state,
        RealKey{FIELD(fluid.density), 1, above_to(0, 100), {}}},
       {"fluid.viscosity_poise", "poise", "dynamic viscosity of the fluid, 1 poise = 0.1 Pa s", shapes_state,
        RealKey{FIELD(fluid.viscosity), 1, above_to(0, 1e4), {}}},
+  };
+}
+
+std::vector<SceneKey> pump_keys() {
+  return {
       {"membrane.density_g_per_cm3", "g_per_cm3", "density of the membrane", shapes_state,
        RealKey{FIELD(membrane.density), 1, above_to(0, 100), {}}},
       {"membrane.young_dyn_per_cm2", "dyn_per_cm2", "Young's modulus, 1 dyn/cm^2 = 0.1 Pa", shapes_state,
@@ -140,8 +151,7 @@ std::vector<SceneKey> physics_keys() {
   };
 }
 
-std::vector<SceneKey> numerics_keys() {
-  constexpr int many = std::numeric_limits<int>::max();
+std::vector<SceneKey> mesh_keys() {
   return {
       {"mesh.gap_elements", "", "elements across the narrowest clearance between solids and walls",
        shapes_state, RealKey{FIELD(mesh.gap_elements), 1, from_to(2, 1000), 5.0}},
@@ -151,15 +161,69 @@ std::vector<SceneKey> numerics_keys() {
        RealKey{FIELD(mesh.membrane_size), cm_per_mm, above_to(0, 1e4), {}}},
       {"mesh.growth", "", "increase of element size per unit distance from a gap", shapes_state,
        RealKey{FIELD(mesh.growth), 1, above_to(0, 10), 0.3}},
-      {"time.scheme", "", "time stepping", shapes_state,
-       choice<FIELD(time.scheme)>({name("bdf1", TimeScheme::bdf1), name("bdf2", TimeScheme::bdf2)}, {},
-                                  "bdf2")},
+  };
+}
+
+std::vector<SceneKey> period_keys() {
+  return {
       {"time.steps_per_period", "", "time steps per period of the actuator", shapes_state,
        IntegerKey{FIELD(time.steps_per_period), 8, 1000000, 96}},
       {"time.periods", "", "periods to compute", leaves_state,
        IntegerKey{FIELD(time.periods), 1, 1000000, 10}},
       {"time.ramp_periods", "", "stroke and head rise smoothly over this many periods", shapes_state,
        RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}},
+  };
+}
+
+std::vector<SceneKey> duration_keys() {
+  return {
+      {"time.step_s", "s", "time step of scenes with [domain] or [body.NAME]", shapes_state,
+       RealKey{FIELD(time.step), 1, above_to(0, 1e6), {}}},
+      {"time.end_s", "s", "time to compute to, in scenes with [domain] or [body.NAME]", leaves_state,
+       RealKey{FIELD(time.end), 1, above_to(0, 1e9), {}}},
+  };
+}
+
+std::vector<SceneKey> domain_keys() {
+  return {
+      {"domain.outline_mm", "mm", "corners of the fluid's domain, in either direction", shapes_state,
+       PositionListKey{FIELD(problem.domain.shape.outline), cm_per_mm}},
+      {"domain.centre_mm", "mm", "centre of a round domain", shapes_state,
+       PositionKey{FIELD(problem.domain.shape.centre), cm_per_mm}},
+      {"domain.radius_mm", "mm", "radius of a round domain, in place of `outline_mm`", shapes_state,
+       RealKey{FIELD(problem.domain.shape.radius), cm_per_mm, from_to(0, 1e6), 0.0}},
+      {"domain.sides", "", "name of the side from each corner to the next; of a round domain its only one",
+       shapes_state, NameListKey{FIELD(problem.domain.sides)}},
+      {"domain.size_mm", "mm", "largest element size of the fluid", shapes_state,
+       RealKey{FIELD(problem.domain.size), cm_per_mm, from_to(0, 1e6), 0.0}},
+      {"domain.growth", "", "increase of the size per unit distance from where it is refined", shapes_state,
+       RealKey{FIELD(problem.domain.growth), 1, above_to(0, 10), 0.2}},
+      {"domain.body_force_dyn_per_cm3", "dyn_per_cm3", "force on the fluid", shapes_state,
+       ExpressionPairKey{FIELD(problem.body_force)}},
+  };
+}
+
+std::vector<SceneKey> statistics_keys() {
+  return {
+      {"output.statistics_from_s", "s",
+       "begin of the window from which statistics.csv takes mean, amplitude and frequency", leaves_state,
+       RealKey{FIELD(output.statistics_from), 1, from_to(0, 1e9), 0.0}},
+  };
+}
+
+std::vector<SceneKey> scoped(Scope scope, std::vector<SceneKey> keys) {
+  for (SceneKey& key : keys) {
+    key.scope = scope;
+  }
+  return keys;
+}
+
+std::vector<SceneKey> numerics_keys() {
+  constexpr int many = std::numeric_limits<int>::max();
+  return {
+      {"time.scheme", "", "time stepping", shapes_state,
+       choice<FIELD(time.scheme)>({name("bdf1", TimeScheme::bdf1), name("bdf2", TimeScheme::bdf2)}, {},
+                                  "bdf2")},
       {"time.factor_every", "", "steps that share one factorisation; GMRES corrects the rest", shapes_state,
        IntegerKey{FIELD(time.factor_every), 1, 1000, 1}},
       {"time.newton_tolerance", "",
@@ -202,8 +266,9 @@ std::vector<SceneKey> numerics_keys() {
 }
 
 std::vector<SceneKey> stabilisation_keys() {
-  const auto weight = [](const char* path, const char* help, double& (*field)(Scene&), double fallback) {
-    return SceneKey{path, "", help, shapes_state, RealKey{field, 1, from_to(0, 1e6), fallback}};
+  const auto weight = [](const char* path, const char* help, std::function<double&(Scene&)> field,
+                         double fallback) {
+    return SceneKey{path, "", help, shapes_state, RealKey{std::move(field), 1, from_to(0, 1e6), fallback}};
   };
   return {
       weight("stabilisation.velocity_jump", "jump of the velocity gradient (convection)",
@@ -229,9 +294,9 @@ std::vector<SceneKey> stabilisation_keys() {
 }
 
 std::vector<SceneKey> thin_gap_keys() {
-  const auto part = [](const char* path, const char* help, double& (*field)(Scene&), double high,
+  const auto part = [](const char* path, const char* help, std::function<double&(Scene&)> field, double high,
                        double fallback) {
-    return SceneKey{path, "", help, shapes_state, RealKey{field, 1, from_to(0, high), fallback}};
+    return SceneKey{path, "", help, shapes_state, RealKey{std::move(field), 1, from_to(0, high), fallback}};
   };
   return {
       {"thin_gap.cells", "", "cells over the membrane's radius, from the tip to the rim", shapes_state,
@@ -268,10 +333,12 @@ std::vector<SceneKey> thin_gap_keys() {
 std::vector<SceneKey> training_keys() {
   const auto bound = [](const char* path, const char* unit, const char* help, double& (*field)(Scene&),
                         double cgs_per_unit, AllowedRange allowed, double fallback) {
-    return SceneKey{path, unit, help, leaves_state, RealKey{field, cgs_per_unit, allowed, fallback}};
+    return SceneKey{path, unit, help, leaves_state,
+                    RealKey{std::move(field), cgs_per_unit, allowed, fallback}};
   };
-  const auto count = [](const char* path, const char* help, int& (*field)(Scene&), int low, int fallback) {
-    return SceneKey{path, "", help, leaves_state, IntegerKey{field, low, 100000, fallback}};
+  const auto count = [](const char* path, const char* help, std::function<int&(Scene&)> field, int low,
+                        int fallback) {
+    return SceneKey{path, "", help, leaves_state, IntegerKey{std::move(field), low, 100000, fallback}};
   };
   return {
       bound("training.frequency_low_Hz", "Hz", "lowest frequency of the box", FIELD(training.frequency_low),
@@ -326,24 +393,51 @@ std::vector<SceneKey> training_keys() {
 std::span<const SceneKey> scene_table() {
   static const std::vector<SceneKey> table = [] {
     std::vector<SceneKey> all;
-    for (auto part : {model_keys(), physics_keys(), numerics_keys(), stabilisation_keys(), thin_gap_keys(),
-                      training_keys()}) {
+    for (const auto& part :
+         {model_keys(), scoped(Scope::pump, geometry_keys()), scoped(Scope::stated, domain_keys()),
+          fluid_keys(), scoped(Scope::pump, pump_keys()), scoped(Scope::pump, mesh_keys()), numerics_keys(),
+          scoped(Scope::pump, period_keys()), scoped(Scope::stated, duration_keys()),
+          scoped(Scope::stated, statistics_keys()), stabilisation_keys(),
+          scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
       all.insert(all.end(), part.begin(), part.end());
     }
-    return all;
+    for (SceneKey& key : all) {
+      for (const char* path : {"model.extent", "model.solid", "model.inlet", "model.outlet"}) {
+        if (key.path == path) {
+          key.scope = Scope::pump;
+        }
+      }
+    }
+    // A section in one piece, whatever scenes have its keys.
+    std::vector<std::string> sections;
+    for (const SceneKey& key : all) {
+      if (std::find(sections.begin(), sections.end(), key.section()) == sections.end()) {
+        sections.push_back(key.section());
+      }
+    }
+    std::vector<SceneKey> sorted;
+    for (const std::string& section : sections) {
+      for (const SceneKey& key : all) {
+        if (key.section() == section) {
+          sorted.push_back(key);
+        }
+      }
+    }
+    return sorted;
   }();
   return table;
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 12> help = {{
+  static const std::array<std::pair<const char*, const char*>, 13> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
-      {"geometry", "Either a profile, or meshes made elsewhere."},
+      {"geometry", "Of a pump: either a profile, or meshes made elsewhere."},
+      {"domain", "The fluid's domain of any other problem: a polygon or a circle, with holes ([hole.NAME])."},
       {"fluid", "Newtonian, incompressible."},
       {"membrane", "Material of the membrane and the region that the actuator holds."},
       {"operating_point", "What the pump is driven with."},
       {"mesh", "Element sizes for meshes made from a profile."},
-      {"time", "The time step is the period over `steps_per_period`."},
+      {"time", "The time step is the period over `steps_per_period`, or `step_s`."},
       {"contact", "Solids that come close to walls, and the slip that lets them (finite elements)."},
       {"output", "Files besides the time series and the cycle means."},
       {"stabilisation",

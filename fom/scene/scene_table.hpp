@@ -3,7 +3,9 @@
 // it.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,14 +31,14 @@ struct AllowedRange {
 
 /// A number in a surface unit; stored value = surface value * cgs_per_unit.
 struct RealKey {
-  double& (*field)(Scene&);
+  std::function<double&(Scene&)> field;
   double cgs_per_unit = 1;
   AllowedRange allowed;
   std::optional<double> fallback; ///< surface unit; none: the key is required
 };
 
 struct IntegerKey {
-  int& (*field)(Scene&);
+  std::function<int&(Scene&)> field;
   int low = 0;
   int high = 0;
   std::optional<int> fallback;
@@ -44,8 +46,8 @@ struct IntegerKey {
 
 /// One of a few names.
 struct ChoiceKey {
-  int (*get)(Scene&);
-  void (*set)(Scene&, int);
+  std::function<int(Scene&)> get;
+  std::function<void(Scene&, int)> set;
   std::vector<std::pair<std::string, int>> available; ///< name, enumerator
   std::vector<std::string> planned;                   ///< in the design, refused by this version
   std::string fallback;
@@ -53,17 +55,55 @@ struct ChoiceKey {
 
 /// Any non-empty text.
 struct TextKey {
-  std::string& (*field)(Scene&);
+  std::function<std::string&(Scene&)> field;
 };
 
 /// An existing file; empty when the key is left out.
 struct FileKey {
-  std::filesystem::path& (*field)(Scene&);
+  std::function<std::filesystem::path&(Scene&)> field;
 };
 
 /// A list of existing files; empty when the key is left out.
 struct FileListKey {
-  std::vector<std::filesystem::path>& (*field)(Scene&);
+  std::function<std::vector<std::filesystem::path>&(Scene&)> field;
+};
+
+/// Arithmetic in the coordinates (mm) and time (s), see scene/expression.hpp; a plain number counts as one.
+struct ExpressionKey {
+  std::function<std::string&(Scene&)> field;
+  std::string fallback; ///< may be empty
+};
+
+/// Two expressions, one per coordinate.
+struct ExpressionPairKey {
+  std::function<std::array<std::string, 2>&(Scene&)> field;
+};
+
+/// A point, [1.0, 2.0]; the origin when the key is left out.
+struct PositionKey {
+  std::function<Position&(Scene&)> field;
+  double cgs_per_unit = 1;
+};
+
+/// Points, [[0.0, 0.0], [1.0, 2.0]]; none when the key is left out.
+struct PositionListKey {
+  std::function<std::vector<Position>&(Scene&)> field;
+  double cgs_per_unit = 1;
+};
+
+/// Names in quotes; "" or none when the key is left out.
+struct NameKey {
+  std::function<std::string&(Scene&)> field;
+};
+struct NameListKey {
+  std::function<std::vector<std::string>&(Scene&)> field;
+};
+
+/// Which scenes have a key.
+enum class Scope {
+  any,
+  pump,  ///< of a pump: geometry from a profile or meshes, an actuator
+  stated ///< with a domain and bodies of their own (Scene::problem)
 };
 
 struct SceneKey {
@@ -71,9 +111,13 @@ struct SceneKey {
   std::string unit; ///< "" for numbers without a unit, names and files; otherwise also the end of `path`
   std::string help;
   bool shapes_state; ///< false: a checkpoint stays valid when the value changes (labels, lengths, campaigns)
-  std::variant<RealKey, IntegerKey, ChoiceKey, TextKey, FileKey, FileListKey> value;
+  std::variant<RealKey, IntegerKey, ChoiceKey, TextKey, FileKey, FileListKey, ExpressionKey,
+               ExpressionPairKey, PositionKey, PositionListKey, NameKey, NameListKey>
+      value;
+  Scope scope = Scope::any;
 
-  [[nodiscard]] std::string section() const; ///< "" outside any section
+  [[nodiscard]] bool applies_to(const Scene& scene) const;
+  [[nodiscard]] std::string section() const; ///< "" outside any section; of an entry "body.flag"
   [[nodiscard]] std::string leaf() const;    ///< path without the section
   [[nodiscard]] bool required() const;
 };

@@ -23,13 +23,17 @@ std::string plain(double value) {
 
 } // namespace
 
+bool SceneKey::applies_to(const Scene& scene) const {
+  return scope == Scope::any || (scope == Scope::stated) == scene.problem.stated;
+}
+
 std::string SceneKey::section() const {
-  const auto dot = path.find('.');
+  const auto dot = path.rfind('.');
   return dot == std::string::npos ? "" : path.substr(0, dot);
 }
 
 std::string SceneKey::leaf() const {
-  const auto dot = path.find('.');
+  const auto dot = path.rfind('.');
   return dot == std::string::npos ? path : path.substr(dot + 1);
 }
 
@@ -37,49 +41,56 @@ bool SceneKey::required() const {
   return std::visit(
       Overloaded{[](const RealKey& key) { return !key.fallback; },
                  [](const IntegerKey& key) { return !key.fallback; }, [](const ChoiceKey&) { return false; },
-                 [](const TextKey&) { return true; }, [](const FileKey&) { return false; },
-                 [](const FileListKey&) { return false; }},
+                 [](const TextKey&) { return true; }, [](const auto&) { return false; }},
       value);
 }
 
 std::string allowed_text(const SceneKey& key) {
   return std::visit(
-      Overloaded{[&](const RealKey& real) {
-                   const AllowedRange& range = real.allowed;
-                   return "a number in " + std::string(range.low_open ? "(" : "[") + plain(range.low) + ", " +
-                          plain(range.high) + (range.high_open ? ")" : "]") +
-                          (key.unit.empty() ? "" : " " + key.unit);
-                 },
-                 [](const IntegerKey& integer) {
-                   return "an integer in [" + std::to_string(integer.low) + ", " +
-                          std::to_string(integer.high) + "]";
-                 },
-                 [](const ChoiceKey& choice) {
-                   std::string text;
-                   for (const auto& [name, enumerator] : choice.available) {
-                     text += (text.empty() ? "\"" : ", \"") + name + "\"";
-                   }
-                   return (choice.available.size() == 1 ? "" : "one of ") + text;
-                 },
-                 [](const TextKey&) { return std::string("a text in quotes, not empty"); },
-                 [](const FileKey&) { return std::string("the name of an existing file, in quotes"); },
-                 [](const FileListKey&) {
-                   return std::string("a list of names of existing files, [\"a.msh\", \"b.msh\"]");
-                 }},
+      Overloaded{
+          [&](const RealKey& real) {
+            const AllowedRange& range = real.allowed;
+            return "a number in " + std::string(range.low_open ? "(" : "[") + plain(range.low) + ", " +
+                   plain(range.high) + (range.high_open ? ")" : "]") +
+                   (key.unit.empty() ? "" : " " + key.unit);
+          },
+          [](const IntegerKey& integer) {
+            return "an integer in [" + std::to_string(integer.low) + ", " + std::to_string(integer.high) +
+                   "]";
+          },
+          [](const ChoiceKey& choice) {
+            std::string text;
+            for (const auto& [name, enumerator] : choice.available) {
+              text += (text.empty() ? "\"" : ", \"") + name + "\"";
+            }
+            return (choice.available.size() == 1 ? "" : "one of ") + text;
+          },
+          [](const TextKey&) { return std::string("a text in quotes, not empty"); },
+          [](const FileKey&) { return std::string("the name of an existing file, in quotes"); },
+          [](const FileListKey&) {
+            return std::string("a list of names of existing files, [\"a.msh\", \"b.msh\"]");
+          },
+          [](const ExpressionKey&) { return std::string("an expression in quotes, or a number"); },
+          [](const ExpressionPairKey&) {
+            return std::string("two expressions or numbers, [\"0\", \"2*t\"]");
+          },
+          [](const PositionKey&) { return std::string("a point, [1.0, 2.0]"); },
+          [](const PositionListKey&) { return std::string("a list of points, [[0.0, 0.0], [1.0, 2.0]]"); },
+          [](const NameKey&) { return std::string("a name in quotes"); },
+          [](const NameListKey&) { return std::string("a list of names, [\"a\", \"b\"]"); }},
       key.value);
 }
 
 std::string default_text(const SceneKey& key) {
-  return std::visit(
-      Overloaded{
-          [](const RealKey& real) { return real.fallback ? shortest_number(*real.fallback) : std::string(); },
-          [](const IntegerKey& integer) {
-            return integer.fallback ? std::to_string(*integer.fallback) : std::string();
-          },
-          [](const ChoiceKey& choice) { return "\"" + choice.fallback + "\""; },
-          [](const TextKey&) { return std::string(); }, [](const FileKey&) { return std::string(); },
-          [](const FileListKey&) { return std::string(); }},
-      key.value);
+  return std::visit(Overloaded{[](const RealKey& real) {
+                                 return real.fallback ? shortest_number(*real.fallback) : std::string();
+                               },
+                               [](const IntegerKey& integer) {
+                                 return integer.fallback ? std::to_string(*integer.fallback) : std::string();
+                               },
+                               [](const ChoiceKey& choice) { return "\"" + choice.fallback + "\""; },
+                               [](const auto&) { return std::string(); }},
+                    key.value);
 }
 
 std::string shortest_number(double value) {

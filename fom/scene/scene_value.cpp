@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "base/error.hpp"
+#include "fom/scene/entry_table.hpp"
 #include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_key_search.hpp"
 
@@ -16,6 +17,7 @@ std::string name_of(const Scene& scene) {
 }
 
 const SceneKey& real_key(const Scene& scene, std::string_view path) {
+  check_entry_exists(scene, path, name_of(scene));
   const SceneKey* key = find_key(path);
   if (key != nullptr && std::holds_alternative<RealKey>(key->value)) {
     return *key;

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/error.hpp"
+#include "fom/scene/entry_table.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_tolerance.hpp"
@@ -33,7 +34,22 @@ std::string toml_string(const std::string& text) {
   return quoted + '"';
 }
 
-/// Value of a key in TOML notation; "" for a file or list that is left out.
+std::string position_text(const Position& position, double cgs_per_unit) {
+  return "[" + shortest_number(to_surface_unit(position[0], cgs_per_unit)) + ", " +
+         shortest_number(to_surface_unit(position[1], cgs_per_unit)) + "]";
+}
+
+/// "[a, b, ...]", "" for no entries.
+template <typename List, typename Text>
+std::string list_text(const List& list, const Text& text_of) {
+  std::string text;
+  for (const auto& entry : list) {
+    text += (text.empty() ? "" : ", ") + text_of(entry);
+  }
+  return text.empty() ? "" : "[" + text + "]";
+}
+
+/// Value of a key in TOML notation; "" for a file, list or expression that is left out.
 std::string value_text(const SceneKey& key, Scene& scene) {
   if (const auto* real = std::get_if<RealKey>(&key.value)) {
     return shortest_number(to_surface_unit(real->field(scene), real->cgs_per_unit));
@@ -54,11 +70,27 @@ std::string value_text(const SceneKey& key, Scene& scene) {
   if (const auto* file = std::get_if<FileKey>(&key.value)) {
     return file->field(scene).empty() ? "" : toml_string(file->field(scene).string());
   }
-  std::string list;
-  for (const auto& file : std::get<FileListKey>(key.value).field(scene)) {
-    list += (list.empty() ? "" : ", ") + toml_string(file.string());
+  if (const auto* files = std::get_if<FileListKey>(&key.value)) {
+    return list_text(files->field(scene), [](const auto& entry) { return toml_string(entry.string()); });
   }
-  return list.empty() ? "" : "[" + list + "]";
+  if (const auto* expression = std::get_if<ExpressionKey>(&key.value)) {
+    return expression->field(scene).empty() ? "" : toml_string(expression->field(scene));
+  }
+  if (const auto* pair = std::get_if<ExpressionPairKey>(&key.value)) {
+    return pair->field(scene)[0].empty() ? "" : list_text(pair->field(scene), toml_string);
+  }
+  if (const auto* position = std::get_if<PositionKey>(&key.value)) {
+    return position_text(position->field(scene), position->cgs_per_unit);
+  }
+  if (const auto* positions = std::get_if<PositionListKey>(&key.value)) {
+    return list_text(positions->field(scene), [&](const Position& position) {
+      return position_text(position, positions->cgs_per_unit);
+    });
+  }
+  if (const auto* name = std::get_if<NameKey>(&key.value)) {
+    return name->field(scene).empty() ? "" : toml_string(name->field(scene));
+  }
+  return list_text(std::get<NameListKey>(key.value).field(scene), toml_string);
 }
 
 /// FNV-1a, 64 bit (Fowler, Noll, Vo): fixed by its definition on every machine, unlike std::hash.
@@ -94,7 +126,7 @@ std::string scene_to_toml(const Scene& scene) {
   Scene copy = scene; // the accessors of the table give mutable references
   std::string text;
   std::string section;
-  for (const SceneKey& key : scene_table()) {
+  for (const SceneKey& key : keys_of(scene)) {
     const std::string value = value_text(key, copy);
     if (value.empty()) {
       continue;
@@ -115,7 +147,7 @@ std::string scene_to_toml(const Scene& scene) {
 std::string scene_hash(const Scene& scene) {
   Scene copy = scene;
   Fingerprint fingerprint;
-  for (const SceneKey& key : scene_table()) {
+  for (const SceneKey& key : keys_of(scene)) {
     if (!key.shapes_state) {
       continue;
     }

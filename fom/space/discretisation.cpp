@@ -48,14 +48,14 @@ void constrain_boundary(Discretisation<dim>& disc) {
       const auto& condition = condition_of(disc.problem, piece.tag);
       if ((condition.kind == Kind::velocity) != velocity_pass) continue;
       const auto& facet = disc.cut.facets.facets[piece.facet];
-      const int axis = condition.kind == Kind::opening ? normal_axis(disc.cut, piece.facet) : 0;
+      const int axis = normal_axis(disc.cut, piece.facet);
       const auto& cell = disc.cut.mesh.cells[disc.cut.parts[piece.part].cell];
       for (int local = 0; local <= dim; ++local) {
         if (std::find(facet.points.begin(), facet.points.end(), cell[local]) == facet.points.end()) continue;
         const int node = disc.fluid_nodes.part_dofs[piece.part][local];
         for (int c = 0; c < dim; ++c) {
           const bool constrained =
-              condition.kind == Kind::velocity || (condition.kind == Kind::symmetry && c == 0) ||
+              condition.kind == Kind::velocity || (condition.kind == Kind::symmetry && c == axis) ||
               (condition.kind == Kind::opening && condition.tangential_zero && c != axis);
           if (!constrained) continue;
           const int unknown = disc.velocity_unknown(node, c);

@@ -21,7 +21,7 @@ TEST(FluidPicture, FillsTheFluidAndKeepsLinearFields) {
   PhaseTimer timer;
   const PreparedLevel level = prepare_level(coarse_scene(), MPI_COMM_SELF, timer);
   const auto& disc = std::get<std::unique_ptr<PreparedScene>>(level)->disc;
-  const LevelView view = view_level(level);
+  const LevelView view = view_level(level, coarse_scene());
   const auto& mesh = view.fluid;
   double fluid = 0, drawn = 0;
   int cut_parts = 0;

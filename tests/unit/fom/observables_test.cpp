@@ -85,7 +85,7 @@ TEST(MembraneProbes, ReadTheAxialDisplacementOfTheMidPlane) {
   Box box(true, Space::axisymmetric);
   const auto bent =
       box.displaced([](const Point<2>& x) { return Point<2>(5.0, x[0] * x[0] + 0.1 * x[0] * x[1]); });
-  const Eigen::VectorXd axial = box.plan.probes.axial * bent;
+  const Eigen::VectorXd axial = box.plan.probes.axial_displacement(bent);
   const double middle = 0.5 * (Sizes::plate_low + Sizes::plate_high);
   ASSERT_EQ(axial.size(), 11);
   for (int k = 0; k < 11; ++k) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
@@ -116,6 +117,64 @@ TEST(PolygonMesh, RefusesPolygonsItCannotMesh) {
   auto untagged = l_shape();
   untagged.tags.pop_back();
   EXPECT_THROW(mesh_polygon(untagged, constant(0.1), 25), InputError);
+}
+
+/// A square of area 4 with a square hole of area 0.25 and a round one of 32 corners.
+TaggedPolygon with_holes(bool clockwise) {
+  TaggedPolygon polygon;
+  polygon.points = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+  polygon.tags = {0, 0, 0, 0};
+  polygon.names = {"outside", "square", "round"};
+  polygon.holes = {{{{0.25, 0.25}, {0.75, 0.25}, {0.75, 0.75}, {0.25, 0.75}}, 1}, {{}, 2}};
+  for (int k = 0; k < 32; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 32;
+    polygon.holes[1].points.push_back({1.4 + 0.3 * std::cos(angle), 1.4 + 0.3 * std::sin(angle)});
+  }
+  if (clockwise)
+    for (auto& hole : polygon.holes) std::reverse(hole.points.begin(), hole.points.end());
+  return polygon;
+}
+
+TEST(PolygonMesh, LeavesHolesOutInEitherDirection) {
+  const double round = 0.5 * 32 * 0.09 * std::sin(2 * std::numbers::pi / 32);
+  for (const bool clockwise : {false, true}) {
+    const auto mesh = mesh_polygon(with_holes(clockwise), constant(0.1), 25);
+    EXPECT_NEAR(mesh_quality(mesh).area, 4 - 0.25 - round, 1e-12);
+    std::array<double, 3> length{};
+    const auto edges = directed_edges(mesh);
+    for (const auto& facet : mesh.boundary) {
+      length[facet.tag] += (mesh.points[facet.points[1]] - mesh.points[facet.points[0]]).norm();
+      EXPECT_TRUE(edges.contains(facet.points)); // the domain to the left of its boundary
+    }
+    EXPECT_NEAR(length[0], 8, 1e-12);
+    EXPECT_NEAR(length[1], 2, 1e-12);
+    EXPECT_NEAR(length[2], 64 * 0.3 * std::sin(std::numbers::pi / 32), 1e-12);
+  }
+}
+
+TEST(PolygonMesh, RefusesHolesThatReachOut) {
+  auto polygon = with_holes(false);
+  polygon.holes[0].points[0] = {-0.1, 0.25};
+  EXPECT_THROW(mesh_polygon(polygon, constant(0.1), 25), InputError);
+}
+
+TEST(PolygonMesh, KeepsPathsInsideAsEdges) {
+  TaggedPolygon polygon;
+  polygon.points = {{0, 0}, {2, 0}, {2, 1}, {0, 1}};
+  polygon.tags = {0, 0, 0, 0};
+  polygon.names = {"side"};
+  polygon.inner_paths = {{{0.8, 0}, {0.9, 0.5}, {0.8, 1}}};
+  const auto mesh = mesh_polygon(polygon, constant(0.2), 25);
+  // No cell has corners on both sides of the path.
+  const auto side = [](const Point<2>& x) { return x.x() - (0.9 - 0.2 * std::abs(x.y() - 0.5)); };
+  for (const auto& cell : mesh.cells) {
+    double low = 0, high = 0;
+    for (const int p : cell) {
+      low = std::min(low, side(mesh.points[p]));
+      high = std::max(high, side(mesh.points[p]));
+    }
+    EXPECT_TRUE(low > -1e-12 || high < 1e-12);
+  }
 }
 
 } // namespace

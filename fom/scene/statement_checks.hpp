@@ -1,0 +1,17 @@
+// Checks of a stated problem that involve several keys.
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "fom/scene/scene.hpp"
+
+namespace undula {
+
+/// Names of the boundaries of the fluid: sides of the domain and holes.
+std::set<std::string> boundary_names(const ProblemStatement& problem);
+
+/// Throws InputError naming the keys that contradict each other; `where` names the scene in the message.
+void check_statement(const Scene& scene, const std::string& where);
+
+} // namespace undula

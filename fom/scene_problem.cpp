@@ -1,0 +1,32 @@
+#include "fom/scene_problem.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "fom/pump_problem.hpp"
+#include "fom/stated_problem.hpp"
+
+namespace undula {
+
+FsiProblem<2> scene_problem(const Scene& scene) {
+  return scene.problem.stated ? stated_problem(scene) : pump_problem(scene);
+}
+
+void require_pump(const Scene& scene, const std::string& command) {
+  if (!scene.problem.stated) return;
+  throw InputError(command + " needs a scene of a pump", "a scene with [domain] or [body.NAME]",
+                   "a scene with \"geometry.profile\" or meshes; undula solve takes any scene",
+                   scene.file.string());
+}
+
+double time_step(const Scene& scene) {
+  if (scene.problem.stated) return scene.time.step;
+  return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);
+}
+
+int last_step(const Scene& scene) {
+  if (scene.problem.stated) return static_cast<int>(std::lround(scene.time.end / scene.time.step));
+  return scene.time.periods * scene.time.steps_per_period;
+}
+
+} // namespace undula

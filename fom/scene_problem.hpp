@@ -1,0 +1,25 @@
+// From a scene to its fluid-structure problem.
+#pragma once
+
+#include <string>
+
+#include "fom/problem.hpp"
+#include "fom/scene/scene.hpp"
+
+namespace undula {
+
+/// Meshes and conditions of a finite-element scene: of the pump (pump_problem), or as the scene states them
+/// (stated_problem). Throws InputError for what is wrong with them.
+FsiProblem<2> scene_problem(const Scene& scene);
+
+/// Time step, s: one period / steps_per_period, or the one a stated scene names.
+double time_step(const Scene& scene);
+
+/// Throws InputError, naming the scene, where `command` needs a pump and the scene states a problem of its
+/// own.
+void require_pump(const Scene& scene, const std::string& command);
+
+/// Number of the step that a run of the scene ends with.
+int last_step(const Scene& scene);
+
+} // namespace undula

@@ -1,0 +1,63 @@
+#include "fom/io/series_statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "fom/io/text_file.hpp"
+#include "io_folder.hpp"
+
+namespace undula {
+namespace {
+
+using std::numbers::pi;
+
+/// Columns of time: one decays onto an oscillation 3 +- 2 at 5.25 Hz, one is constant, one rises.
+TimeSeries oscillating(double wiggle) {
+  TimeSeries table{{"time_s", "swing_mm", "still_mm", "rise_mm"}, {}, {}};
+  for (int step = 1; step <= 2000; ++step) {
+    const double t = 1e-3 * step;
+    table.steps.push_back(step);
+    table.values.insert(table.values.end(),
+                        {t, 3 + 20 * std::exp(-20 * t) + 2 * std::sin(2 * pi * 5.25 * t) + wiggle * (step % 2),
+                         7.0, t});
+  }
+  return table;
+}
+
+TEST(SeriesStatistics, MeanAmplitudeAndFrequencyOfTheLastOscillation) {
+  const auto all = series_statistics(oscillating(0), 1.0);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].column, "swing_mm");
+  EXPECT_NEAR(all[0].mean, 3, 1e-3);
+  EXPECT_NEAR(all[0].amplitude, 2, 1e-3);
+  EXPECT_NEAR(all[0].frequency_Hz, 5.25, 1e-4);
+  EXPECT_EQ(all[0].oscillations, 4);
+  EXPECT_EQ(all[1].mean, 7);
+  EXPECT_EQ(all[1].amplitude, 0);
+  EXPECT_EQ(all[1].oscillations, 0);
+  EXPECT_NEAR(all[2].mean, 1.5, 1e-12);
+  EXPECT_NEAR(all[2].last, 2, 1e-12);
+  EXPECT_EQ(all[2].frequency_Hz, 0);
+}
+
+TEST(SeriesStatistics, WigglesAtTheMeanAreNoOscillations) {
+  EXPECT_NEAR(series_statistics(oscillating(0.1), 1.0)[0].frequency_Hz, 5.25, 0.01);
+}
+
+TEST(SeriesStatistics, ATableNeedsItsTime) {
+  EXPECT_THROW(series_statistics({{"swing_mm"}, {1}, {2.0}}, 0), InputError);
+}
+
+class SeriesStatisticsFile : public FolderTest {};
+
+TEST_F(SeriesStatisticsFile, HasOneLinePerColumn) {
+  write_statistics({{"swing_mm", 1.5, 3, 2, 5.25, 4}}, folder / "statistics.csv");
+  EXPECT_EQ(read_text_file(folder / "statistics.csv"),
+            "column,last,mean,amplitude,frequency_Hz,oscillations\nswing_mm,1.5,3,2,5.25,4\n");
+}
+
+} // namespace
+} // namespace undula

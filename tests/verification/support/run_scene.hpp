@@ -1,0 +1,51 @@
+// Runs a scene file as `undula solve` does and keeps its time series.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "fom/io/series_statistics.hpp"
+#include "fom/level.hpp"
+#include "fom/scene/scene_file.hpp"
+
+namespace undula::verification {
+
+struct SceneRun {
+  Scene scene;
+  TimeSeries table;
+  int unknowns = 0;
+
+  /// Column of the table by its name.
+  std::vector<double> column(const std::string& name) const {
+    const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+    EXPECT_NE(found, table.columns.end()) << "no column " << name;
+    std::vector<double> values;
+    for (std::size_t row = 0; row < table.rows() && found != table.columns.end(); ++row)
+      values.push_back(table.value(row, static_cast<std::size_t>(found - table.columns.begin())));
+    return values;
+  }
+  double last(const std::string& name) const { return column(name).at(table.rows() - 1); }
+};
+
+/// `name` of a scene in data/scenes.
+inline SceneRun run_scene(const std::string& name, const std::vector<std::string>& settings) {
+  SceneRun run;
+  run.scene = read_scene(UNDULA_SOURCE_DIR "/data/scenes/" + name + ".toml", settings);
+  PhaseTimer timer;
+  PreparedLevel level = prepare_level(run.scene, MPI_COMM_SELF, timer);
+  run.unknowns = unknowns(level);
+  const RowLayout rows = view_level(level, run.scene).rows;
+  run.table.columns = observation_columns(rows);
+  State state = initial_state(level);
+  march(level, run.scene, state, timer, [&](const State& now, const Observation& seen) {
+    run.table.steps.push_back(now.step);
+    const auto row = observation_row(seen, rows);
+    run.table.values.insert(run.table.values.end(), row.begin(), row.end());
+  });
+  return run;
+}
+
+} // namespace undula::verification
