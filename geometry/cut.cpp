@@ -710,6 +710,11 @@ CutMesh<dim> BackgroundCutter<dim>::cut(std::span<const SimplexMesh<dim>> solids
 }
 
 template <int dim>
+const CutOptions& BackgroundCutter<dim>::options() const {
+  return setup_->options;
+}
+
+template <int dim>
 CutMesh<dim> cut_mesh(const SimplexMesh<dim>& background, std::span<const SimplexMesh<dim>> solids,
                       const CutOptions& options) {
   return BackgroundCutter<dim>(background, solids, options).cut(solids);

@@ -15,6 +15,8 @@ struct CutOptions {
   std::string reproducer_directory = "."; ///< where a failing element is written (one-cell reproducer)
   /// Every cell in exact arithmetic: the reference of the cut in floating point, and the only way in 3D.
   bool exact = false;
+
+  bool operator==(const CutOptions&) const = default;
 };
 
 /// A background with the topology of the solids that cut it: all that does not change when solids move.
@@ -39,6 +41,8 @@ public:
   /// reproducer file (see cut_reproducer.hpp), if an element does not add up (sum of parts + solid = element,
   /// every part closed, to 1e-10 relative), as with solids that overlap.
   CutMesh<dim> cut(std::span<const SimplexMesh<dim>> solids) const;
+
+  const CutOptions& options() const;
 
   struct Setup;
 

@@ -33,6 +33,11 @@ std::vector<int> one_sided(const FacetTable<2>& table) {
   return facets;
 }
 
+// Bounds of the error of a crossing in parts of its facet (the error itself is a tenth or less): what a cell
+// in floating point may have at all, and what it may have beside one in exact arithmetic.
+constexpr double worst_crossing = 1e-11;
+constexpr double good_crossing = 1e-13;
+
 constexpr int outside = -1;
 constexpr int unknown = -2;
 
@@ -54,6 +59,7 @@ public:
     for (const int segment : touching) mark_around(segment);
     list_chains();
     sort_crossings();
+    spread_uncertainty();
     return std::move(trace_);
   }
 
@@ -256,11 +262,31 @@ private:
       std::sort(trace_.sorted.begin() + first[f], trace_.sorted.begin() + first[f + 1],
                 [&](int a, int b) { return trace_.crossings[a].t < trace_.crossings[b].t; });
       for (int i = 0; i + 1 < trace_.count(f); ++i) {
-        const auto& here = trace_.at(f, i);
-        const auto& there = trace_.at(f, i + 1);
-        if (there.t - here.t > here.error + there.error) continue;
-        for (const int cell : facets_.facets[f].cells)
-          if (cell >= 0) trace_.uncertain[cell] = 1;
+        const auto &here = trace_.at(f, i), &there = trace_.at(f, i + 1);
+        if (there.t - here.t <= here.error + there.error) mark_beside(f);
+      }
+    }
+  }
+
+  void mark_beside(int facet) {
+    for (const int cell : facets_.facets[facet].cells)
+      if (cell >= 0) trace_.uncertain[cell] = 1;
+  }
+
+  // Where the skin runs almost along a facet, rounding moves the crossing a long way. Cells in floating point
+  // share it and still close; beside a cell in exact arithmetic they would not.
+  void spread_uncertainty() {
+    for (const auto& crossing : trace_.crossings)
+      if (crossing.error > worst_crossing) mark_beside(crossing.facet);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const auto& crossing : trace_.crossings) {
+        const auto& cells = facets_.facets[crossing.facet].cells;
+        if (crossing.error <= good_crossing || cells[1] < 0 ||
+            trace_.uncertain[cells[0]] == trace_.uncertain[cells[1]])
+          continue;
+        mark_beside(crossing.facet);
+        changed = true;
       }
     }
   }

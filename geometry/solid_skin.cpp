@@ -55,6 +55,19 @@ bool folds_back(const PlacedSegment& first, const PlacedSegment& second) {
 
 enum class Meeting { apart, touching, crossing };
 
+constexpr double contact_depth = 1e-12; // of the longer segment: bodies in contact overlap by rounding
+
+// How far the ends of two segments that cross reach beyond each other, at least, over the longer segment.
+double relative_depth(const PlacedSegment& s, const PlacedSegment& t) {
+  const double s_length = (s.b - s.a).norm(), t_length = (t.b - t.a).norm();
+  const auto depth = [](const PlacedSegment& line, double length, const Point<2>& x) {
+    return std::abs(orientation(line.a, line.b, x).value) / length;
+  };
+  return std::min({depth(s, s_length, t.a), depth(s, s_length, t.b), depth(t, t_length, s.a),
+                   depth(t, t_length, s.b)}) /
+         std::max(s_length, t_length);
+}
+
 Meeting meeting(const PlacedSegment& s, const PlacedSegment& t) {
   const int ta = exact_orientation(s.a, s.b, t.a);
   const int tb = exact_orientation(s.a, s.b, t.b);
@@ -62,7 +75,7 @@ Meeting meeting(const PlacedSegment& s, const PlacedSegment& t) {
   const int sa = exact_orientation(t.a, t.b, s.a);
   const int sb = exact_orientation(t.a, t.b, s.b);
   if (sa * sb > 0) return Meeting::apart;
-  if (ta * tb < 0 && sa * sb < 0) return Meeting::crossing;
+  if (ta * tb < 0 && sa * sb < 0 && relative_depth(s, t) > contact_depth) return Meeting::crossing;
   return Meeting::touching; // or collinear, with boxes that touch
 }
 

@@ -38,7 +38,7 @@ template <int dim>
 void check_placed_solids(std::span<const SimplexMesh<dim>> solids);
 
 /// Segments that touch another one beyond the points they share by connectivity, ascending. Throws
-/// NumericsError if two segments cross.
+/// NumericsError if two segments cross by more than 1e-12 of their length; by less, they touch.
 std::vector<int> touching_segments(const SolidSkin& skin, std::span<const PlacedSegment> placed);
 
 } // namespace undula

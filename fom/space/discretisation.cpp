@@ -143,7 +143,8 @@ Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& option
     disc.placed_solids.push_back(body.mesh);
     disc.solid_spaces.push_back(build_quadratic_space(body.mesh));
   }
-  disc.cut = cut_mesh<dim>(disc.problem.background, disc.placed_solids, options);
+  disc.cutter.emplace(disc.problem.background, disc.placed_solids, options);
+  disc.cut = disc.cutter->cut(disc.placed_solids);
   number_unknowns(disc);
   return disc;
 }
@@ -161,7 +162,10 @@ Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& pl
       placed.points[i] += placement.template segment<dim>(first + static_cast<Eigen::Index>(i) * dim);
     first += static_cast<Eigen::Index>(before.solid_spaces[s].nodes.size()) * dim;
   }
-  disc.cut = cut_mesh<dim>(before.problem.background, disc.placed_solids, options); // may throw: before stays
+  disc.cutter = before.cutter;
+  if (disc.cutter->options() != options)
+    disc.cutter.emplace(before.problem.background, disc.placed_solids, options);
+  disc.cut = disc.cutter->cut(disc.placed_solids); // may throw: before stays
   disc.problem = std::move(before.problem);
   disc.solid_spaces = std::move(before.solid_spaces);
   number_unknowns(disc);

@@ -6,6 +6,7 @@
 // Displacements are stored in an array of the same length as the unknowns, at the places of the velocities.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,7 +41,8 @@ struct Discretisation {
   /// The fluid's domain of this cut is the one of its instant and follows the solids from cut to cut; else
   /// the domain is fixed, or moves by `map`.
   bool interface_moves = false;
-  DomainMap<dim> map; ///< of the fluid's domain; empty: identity
+  DomainMap<dim> map;                          ///< of the fluid's domain; empty: identity
+  std::optional<BackgroundCutter<dim>> cutter; ///< the background, prepared for the cuts of a moving solid
   CutMesh<dim> cut;
   DofSets<dim> fluid_nodes;
   std::vector<QuadraticSpace<dim>> solid_spaces;
