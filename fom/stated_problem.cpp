@@ -34,8 +34,7 @@ std::vector<Point<2>> half_circle(const Position& centre, double radius, double 
   auto points = circle(centre, radius, size);
   std::erase_if(points, [&](const Point<2>& x) { return x[0] < 1e-6 * radius; });
   // From the lower pole to the upper one.
-  std::sort(points.begin(), points.end(),
-            [](const Point<2>& a, const Point<2>& b) { return a[1] < b[1]; });
+  std::sort(points.begin(), points.end(), [](const Point<2>& a, const Point<2>& b) { return a[1] < b[1]; });
   points.insert(points.begin(), Point<2>(0.0, centre[1] - radius));
   points.emplace_back(0.0, centre[1] + radius);
   return points;
@@ -167,7 +166,7 @@ public:
   explicit Functions(const Scene& scene) : scene_(scene) {}
 
   Expression expression(const std::string& text, const std::string& where) const {
-    return {text, scene_.space, scene_.problem.constants, scene_.file.string() + ", " + where};
+    return {text, scene_.space, scene_.problem.constants, where};
   }
   /// Empty for expressions that are left out; `cgs_per_unit` times their value.
   VectorField<2> vector(const std::array<std::string, 2>& texts, double cgs_per_unit,
@@ -295,7 +294,7 @@ FsiProblem<2> stated_problem(const Scene& scene) {
   problem.flow = scene.flow;
   problem.fluid = scene.fluid;
   problem.stabilisation = scene.stabilisation;
-  problem.body_force = functions.vector(statement.body_force, 1, "[domain]");
+  problem.body_force = functions.vector(statement.body_force, 1, scene.file.string() + ", section [domain]");
   const bool axisymmetric = scene.space == Space::axisymmetric;
   problem.background = domain_mesh(statement, axisymmetric);
   problem.pin_pressure = true;
@@ -303,13 +302,14 @@ FsiProblem<2> stated_problem(const Scene& scene) {
     const auto found = statement.boundaries.find(name);
     const BoundaryStatement wall;
     const BoundaryStatement& stated = found == statement.boundaries.end() ? wall : found->second;
-    const std::string where = "[boundary." + name + "]";
-    check_alignment(problem.background, stated, name, scene.file.string() + ", " + where);
+    const std::string where = scene.file.string() + ", section [boundary." + name + "]";
+    check_alignment(problem.background, stated, name, where);
     problem.boundary.emplace(name, condition_of(stated, functions, where));
     if (stated.kind == BoundaryStatement::Kind::opening) problem.pin_pressure = false;
   }
   for (const auto& [name, body] : statement.bodies)
-    problem.solids.push_back(body_of(name, body, axisymmetric, functions, "[body." + name + "]"));
+    problem.solids.push_back(
+        body_of(name, body, axisymmetric, functions, scene.file.string() + ", section [body." + name + "]"));
   return problem;
 }
 

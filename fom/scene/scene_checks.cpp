@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/units.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "fom/scene/statement_checks.hpp"
 
 namespace undula {
@@ -80,13 +81,13 @@ void check_contact(const Scene& scene, const std::string& where) {
   }
   if ((contact.film > 0) != (contact.stiffness > 0)) {
     throw InputError("the law of contact is stated by half",
-                     "film_mm = " + shortest_number(units::length_to_mm(contact.film)) +
+                     "film_mm = " + shortest_number(to_surface_unit(contact.film, units::cm_per_mm)) +
                          ", stiffness_dyn_per_cm2 = " + shortest_number(contact.stiffness),
                      "both positive, or both 0", where + ", section [contact]");
   }
   if ((contact.slip > 0) != (scene.interface == Interface::slip)) {
     throw InputError("slip is stated by half",
-                     "slip_length_mm = " + shortest_number(units::length_to_mm(contact.slip)) +
+                     "slip_length_mm = " + shortest_number(to_surface_unit(contact.slip, units::cm_per_mm)) +
                          " with interface = " + (contact.slip > 0 ? "\"no-slip\"" : "\"slip\""),
                      "model.interface = \"slip\" with \"slip_length_mm\" > 0, or neither",
                      where + ", section [contact]");

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <set>
 #include <sstream>
 #include <type_traits>
@@ -55,19 +56,21 @@ public:
   void read_file(const toml::table& file, const Origin& origin) {
     scene.problem.stated = file.contains("domain") || file.contains("body");
     // What expressions depend on comes first.
-    toml::table first, rest = file;
-    for (const char* section : {constants_section, "model"}) {
-      if (const toml::node* node = file.get(section)) {
-        first.insert(section, *node);
-        rest.erase(section);
-      }
-    }
-    read_table(first, "", origin);
-    read_table(rest, "", origin);
+    const auto is_first = [](std::string_view section) {
+      return section == constants_section || section == "model";
+    };
+    read_table(file, "", origin, is_first);
+    read_table(file, "", origin, [&](std::string_view section) { return !is_first(section); });
   }
 
-  void read_table(const toml::table& table, const std::string& prefix, const Origin& origin) {
+  /// The keys of a table that `counts` accepts.
+  void read_table(
+      const toml::table& table, const std::string& prefix, const Origin& origin,
+      const std::function<bool(std::string_view)>& counts = [](std::string_view) { return true; }) {
     for (const auto& [key, node] : table) {
+      if (!counts(key.str())) {
+        continue;
+      }
       const std::string path = prefix + std::string(key.str());
       if (prefix.empty() && entry_of(path + ".NAME")) {
         read_entries(path, node, origin.at(key.source()), origin);

@@ -18,7 +18,7 @@ namespace {
 
 /// A channel of 40 x 10 mm with a round hole and a square body that is held to the left of x = 21 mm.
 Scene channel(const std::vector<std::string>& settings = {}) {
-  return parse_scene(R"(
+  return parse_scene(R"toml(
 name = "channel"
 [model]
 space = "plane"
@@ -55,7 +55,7 @@ velocity_cm_per_s = ["1", "y"]
 [time]
 step_s = 0.01
 end_s = 0.105
-)",
+)toml",
                      "channel", "/", settings);
 }
 
@@ -73,7 +73,8 @@ TEST(StatedProblem, MeshesTheDomainWithoutItsHoles) {
   EXPECT_NEAR(area(problem.background), 4.0 - hole, 1e-12);
   double inlet = 0, outlet = 0;
   for (const auto& facet : problem.background.boundary) {
-    const auto &a = problem.background.points[facet.points[0]], &b = problem.background.points[facet.points[1]];
+    const auto &a = problem.background.points[facet.points[0]],
+               &b = problem.background.points[facet.points[1]];
     const auto& name = problem.background.boundary_names[facet.tag];
     if (name == "inlet") {
       inlet += (b - a).norm();
