@@ -66,28 +66,27 @@ std::vector<ColumnStatistics> series_statistics(const TimeSeries& table, double 
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     if (column == time_column || table.rows() == 0) continue;
     Samples samples;
+    const bool window_empty = table.value(table.rows() - 1, time_column) < from;
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      if (table.value(row, time_column) < from) continue;
+      if (!window_empty && table.value(row, time_column) < from) continue;
       samples.time.push_back(table.value(row, time_column));
       samples.value.push_back(table.value(row, column));
     }
     ColumnStatistics one;
     one.column = table.columns[column];
     one.last = table.value(table.rows() - 1, column);
-    if (!samples.value.empty()) {
-      auto extremes = samples.extremes(0, samples.value.size());
-      const double size = std::max(std::abs(extremes.low), std::abs(extremes.high));
-      if (extremes.amplitude() > 1e-9 * size) {
-        const auto crossings = upward_crossings(samples, extremes);
-        if (crossings.size() > 1) {
-          one.oscillations = static_cast<int>(crossings.size()) - 1;
-          one.frequency_Hz = one.oscillations / (crossings.back().time - crossings.front().time);
-          extremes = samples.extremes(crossings[crossings.size() - 2].row, crossings.back().row);
-        }
+    auto extremes = samples.extremes(0, samples.value.size());
+    const double size = std::max(std::abs(extremes.low), std::abs(extremes.high));
+    if (extremes.amplitude() > 1e-9 * size) {
+      const auto crossings = upward_crossings(samples, extremes);
+      if (crossings.size() > 1) {
+        one.oscillations = static_cast<int>(crossings.size()) - 1;
+        one.frequency_Hz = one.oscillations / (crossings.back().time - crossings.front().time);
+        extremes = samples.extremes(crossings[crossings.size() - 2].row, crossings.back().row);
       }
-      one.mean = extremes.mean();
-      one.amplitude = extremes.amplitude();
     }
+    one.mean = extremes.mean();
+    one.amplitude = extremes.amplitude();
     all.push_back(std::move(one));
   }
   return all;

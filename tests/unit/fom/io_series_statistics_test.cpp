@@ -1,11 +1,10 @@
-#include "fom/io/series_statistics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "base/error.hpp"
+#include "fom/io/series_statistics.hpp"
 #include "fom/io/text_file.hpp"
 #include "io_folder.hpp"
 
@@ -20,9 +19,9 @@ TimeSeries oscillating(double wiggle) {
   for (int step = 1; step <= 2000; ++step) {
     const double t = 1e-3 * step;
     table.steps.push_back(step);
-    table.values.insert(table.values.end(),
-                        {t, 3 + 20 * std::exp(-20 * t) + 2 * std::sin(2 * pi * 5.25 * t) + wiggle * (step % 2),
-                         7.0, t});
+    table.values.insert(
+        table.values.end(),
+        {t, 3 + 20 * std::exp(-20 * t) + 2 * std::sin(2 * pi * 5.25 * t) + wiggle * (step % 2), 7.0, t});
   }
   return table;
 }
@@ -45,6 +44,10 @@ TEST(SeriesStatistics, MeanAmplitudeAndFrequencyOfTheLastOscillation) {
 
 TEST(SeriesStatistics, WigglesAtTheMeanAreNoOscillations) {
   EXPECT_NEAR(series_statistics(oscillating(0.1), 1.0)[0].frequency_Hz, 5.25, 0.01);
+}
+
+TEST(SeriesStatistics, AWindowBehindTheEndIsTheWholeTable) {
+  EXPECT_NEAR(series_statistics(oscillating(0), 3.0)[2].mean, 0.5 * (0.001 + 2), 1e-12);
 }
 
 TEST(SeriesStatistics, ATableNeedsItsTime) {
