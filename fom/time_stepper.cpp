@@ -31,7 +31,7 @@ template <int dim>
 Eigen::VectorXd convection_of(const Discretisation<dim>& disc, const Operators<dim>& operators,
                               const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
   Eigen::VectorXd convection = Eigen::VectorXd::Zero(x.size());
-  if (disc.problem.flow == FlowModel::navier_stokes)
+  if (has_convection(disc))
     visit_convection(disc, operators, b,
                      [&](int row, int column, double value) { convection[row] += value * x[column]; });
   return convection;

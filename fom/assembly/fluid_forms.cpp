@@ -9,71 +9,65 @@ constexpr int volume_degree = 4;
 } // namespace
 
 template <int dim>
-PartMoments<dim> part_moments(const Discretisation<dim>& disc, const Share& share) {
-  const auto rule = reference_rule<dim>(volume_degree);
-  PartMoments<dim> moments(disc.cut.parts.size(), PartMoments<dim>::value_type::Zero());
-  for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
-    const int part = static_cast<int>(p);
-    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[part][0], 0))) continue;
-    for_each_point(disc, part, rule, [&](const Point<dim>& x, double w) {
-      const auto lambda = barycentric_coordinates(disc.cut.mesh, disc.cut.parts[part].cell, x);
-      moments[part] += w * lambda * lambda.transpose();
-    });
-  }
-  return moments;
-}
-
-template <int dim>
-void add_fluid_mass(const Discretisation<dim>& disc, const PartMoments<dim>& moments, Triplets& out) {
-  for (std::size_t part = 0; part < moments.size(); ++part) {
-    if (moments[part].isZero(0)) continue;
-    const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    for (int i = 0; i <= dim; ++i)
-      for (int j = 0; j <= dim; ++j)
-        for (int c = 0; c < dim; ++c)
-          out.emplace_back(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c),
-                           disc.problem.fluid.density * moments[part](i, j));
-  }
-}
-
-template <int dim>
-void add_fluid_viscosity_and_pressure(const Discretisation<dim>& disc, const Share& share, Triplets& out) {
-  const auto rule = reference_rule<dim>(volume_degree);
-  const double mu = disc.problem.fluid.viscosity;
+PartIntegrals<dim> integrate_part(const Discretisation<dim>& disc, int part,
+                                  const PartGeometry<dim>& geometry) {
+  static const auto rule = reference_rule<dim>(volume_degree);
   const bool hoop = disc.problem.space == Space::axisymmetric;
-  constexpr int size = (dim + 1) * (dim + 1);
-  for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
-    const int part = static_cast<int>(p);
-    const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
-    const int cell = disc.cut.parts[part].cell;
-    const auto g = barycentric_gradients(disc.cut.mesh, cell);
-    Eigen::Matrix<double, size, size> local = Eigen::Matrix<double, size, size>::Zero();
-    const auto at = [](int node, int component) { return node * (dim + 1) + component; };
-    for_each_point(disc, part, rule, [&](const Point<dim>& x, double w) {
-      const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
-      const double inverse_r = hoop ? 1.0 / x[0] : 0.0;
-      const auto divergence = [&](int node, int c) {
-        return g(c, node) + (c == 0 ? lambda[node] * inverse_r : 0.0);
-      };
-      for (int i = 0; i <= dim; ++i)
-        for (int j = 0; j <= dim; ++j) {
-          const double laplace = g.col(i).dot(g.col(j));
-          for (int c = 0; c < dim; ++c) {
-            local(at(i, c), at(j, c)) += w * mu * laplace;
-            for (int d = 0; d < dim; ++d) local(at(i, d), at(j, c)) += w * mu * g(c, i) * g(d, j);
-            local(at(i, c), at(j, dim)) -= w * lambda[j] * divergence(i, c);
-            local(at(i, dim), at(j, c)) += w * lambda[i] * divergence(j, c);
-          }
-          local(at(i, 0), at(j, 0)) += w * 2 * mu * lambda[i] * lambda[j] * inverse_r * inverse_r;
+  const auto w_domain = domain_velocity(disc, part);
+  const bool moves = !w_domain.isZero(0);
+  const double widening = moves ? w_domain.cwiseProduct(geometry.gradients).sum() : 0.0;
+  PartIntegrals<dim> integrals;
+  for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<dim>& x, double w) {
+    const Eigen::Matrix<double, dim + 1, dim + 1> product = lambda * lambda.transpose();
+    integrals.moments += w * product;
+    if (hoop) {
+      integrals.over_radius += w / x[0] * product;
+      integrals.over_radius_squared += w / (x[0] * x[0]) * product;
+      if (moves) integrals.widening += w * w_domain.row(0).dot(lambda) / x[0] * product;
+    }
+  });
+  if (moves) integrals.widening += widening * integrals.moments;
+  return integrals;
+}
+
+template <int dim>
+void add_fluid_mass(const Discretisation<dim>& disc, int part, const PartIntegrals<dim>& integrals,
+                    Triplets& out) {
+  const auto& nodes = disc.fluid_nodes.part_dofs[part];
+  for (int i = 0; i <= dim; ++i)
+    for (int j = 0; j <= dim; ++j)
+      for (int c = 0; c < dim; ++c)
+        out.emplace_back(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c),
+                         disc.problem.fluid.density * integrals.moments(i, j));
+}
+
+template <int dim>
+void add_fluid_viscosity_and_pressure(const Discretisation<dim>& disc, int part,
+                                      const PartGeometry<dim>& geometry, const PartIntegrals<dim>& integrals,
+                                      Triplets& out) {
+  const double mu = disc.problem.fluid.viscosity;
+  const auto& nodes = disc.fluid_nodes.part_dofs[part];
+  const auto& g = geometry.gradients;
+  // The barycentric coordinates sum to one: row sums are first moments, the whole is the volume.
+  const Eigen::Matrix<double, dim + 1, 1> first = integrals.moments.rowwise().sum();
+  const double stress = mu * first.sum();
+  for (int i = 0; i <= dim; ++i)
+    for (int j = 0; j <= dim; ++j) {
+      const double laplace = stress * g.col(i).dot(g.col(j));
+      for (int c = 0; c < dim; ++c) {
+        const int row = disc.velocity_unknown(nodes[i], c);
+        for (int d = 0; d < dim; ++d) {
+          double value = stress * g(d, i) * g(c, j);
+          if (c == d) value += laplace;
+          if (c == 0 && d == 0) value += 2 * mu * integrals.over_radius_squared(i, j);
+          out.emplace_back(row, disc.velocity_unknown(nodes[j], d), value);
         }
-    });
-    for (int a = 0; a < size; ++a)
-      for (int b = 0; b < size; ++b)
-        if (local(a, b) != 0)
-          out.emplace_back(nodes[a / (dim + 1)] * (dim + 1) + a % (dim + 1),
-                           nodes[b / (dim + 1)] * (dim + 1) + b % (dim + 1), local(a, b));
-  }
+        double divergence = first[j] * g(c, i);
+        if (c == 0) divergence += integrals.over_radius(i, j);
+        out.emplace_back(row, disc.pressure_unknown(nodes[j]), -divergence);
+        out.emplace_back(disc.pressure_unknown(nodes[j]), row, divergence);
+      }
+    }
 }
 
 template <int dim>
@@ -118,8 +112,9 @@ Eigen::VectorXd body_force_load(const Discretisation<dim>& disc, const Share& sh
     for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
       const auto& nodes = disc.fluid_nodes.part_dofs[p];
       if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
-      for_each_point(disc, static_cast<int>(p), rule, [&](const Point<dim>& x, double w) {
-        const auto lambda = barycentric_coordinates(disc.cut.mesh, disc.cut.parts[p].cell, x);
+      const int part = static_cast<int>(p);
+      const auto geometry = part_geometry(disc, part);
+      for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<dim>& x, double w) {
         const Point<dim> force = disc.problem.body_force(x, t);
         for (int i = 0; i <= dim; ++i)
           for (int c = 0; c < dim; ++c) load[disc.velocity_unknown(nodes[i], c)] += w * lambda[i] * force[c];
@@ -148,9 +143,11 @@ Eigen::VectorXd body_force_load(const Discretisation<dim>& disc, const Share& sh
   return load;
 }
 
-template PartMoments<2> part_moments(const Discretisation<2>&, const Share&);
-template void add_fluid_mass(const Discretisation<2>&, const PartMoments<2>&, Triplets&);
-template void add_fluid_viscosity_and_pressure(const Discretisation<2>&, const Share&, Triplets&);
+template struct PartIntegrals<2>;
+template PartIntegrals<2> integrate_part(const Discretisation<2>&, int, const PartGeometry<2>&);
+template void add_fluid_mass(const Discretisation<2>&, int, const PartIntegrals<2>&, Triplets&);
+template void add_fluid_viscosity_and_pressure(const Discretisation<2>&, int, const PartGeometry<2>&,
+                                               const PartIntegrals<2>&, Triplets&);
 template Eigen::Matrix3d part_convection<2>(double, const Eigen::Matrix3d&,
                                             const Eigen::Matrix<double, 2, 3>&,
                                             const Eigen::Matrix<double, 2, 3>&);

@@ -2,8 +2,8 @@
 // All integrals carry the measure (2 pi r in axisymmetric space).
 #pragma once
 
+#include "fom/assembly/part_geometry.hpp"
 #include "fom/assembly/sparse.hpp"
-#include "fom/space/discretisation.hpp"
 
 namespace undula {
 
@@ -14,32 +14,48 @@ struct Share {
   bool has(int unknown) const { return (*owner)[unknown] == rank; }
 };
 
-/// int lambda_k lambda_i dV over every fluid part, (dim+1) x (dim+1) per part, zero outside the share.
-/// cm^dim. Mass and convection of P1 fields on affine simplices need nothing else.
+/// Integrals over one fluid part, moved by the map, from which all its volume terms follow: those of products
+/// lambda_k lambda_i with the weights 1, 1/r and 1/r^2 (axisymmetric space only), and rate of widening
+/// div w of the domain. cm^dim, cm^(dim-1), cm^(dim-2), cm^dim/s.
+template <int dim>
+struct PartIntegrals {
+  using Products = Eigen::Matrix<double, dim + 1, dim + 1>;
+  Products moments = Products::Zero();
+  Products over_radius = Products::Zero();
+  Products over_radius_squared = Products::Zero();
+  Products widening = Products::Zero();
+};
+template <int dim>
+PartIntegrals<dim> integrate_part(const Discretisation<dim>& disc, int part,
+                                  const PartGeometry<dim>& geometry);
+
+/// By part; zero outside the share.
 template <int dim>
 using PartMoments = std::vector<Eigen::Matrix<double, dim + 1, dim + 1>>;
-template <int dim>
-PartMoments<dim> part_moments(const Discretisation<dim>& disc, const Share& share);
 
-/// rho (u, v).
+/// rho (u, v) of one part.
 template <int dim>
-void add_fluid_mass(const Discretisation<dim>& disc, const PartMoments<dim>& moments, Triplets& out);
+void add_fluid_mass(const Discretisation<dim>& disc, int part, const PartIntegrals<dim>& integrals,
+                    Triplets& out);
 
-/// 2 mu (eps(u), eps(v)) - (p, div v) + (q, div u), with the hoop terms in axisymmetric space.
+/// 2 mu (eps(u), eps(v)) - (p, div v) + (q, div u) of one part, with the hoop terms in axisymmetric space.
 template <int dim>
-void add_fluid_viscosity_and_pressure(const Discretisation<dim>& disc, const Share& share, Triplets& out);
+void add_fluid_viscosity_and_pressure(const Discretisation<dim>& disc, int part,
+                                      const PartGeometry<dim>& geometry, const PartIntegrals<dim>& integrals,
+                                      Triplets& out);
 
 /// Continuous interior penalty and ghost penalty (Burman & Fernandez 2006/2014; Massing, Schott & Wall 2018)
-/// with weights that do not depend on the solution.
+/// with weights that do not depend on the solution, on the moved elements. `geometries` of all parts.
 template <int dim>
-void add_fluid_stabilisation(const Discretisation<dim>& disc, const Share& share, Triplets& out);
+void add_fluid_stabilisation(const Discretisation<dim>& disc, const Share& share,
+                             std::span<const PartGeometry<dim>> geometries, Triplets& out);
 
 /// Nitsche coupling with the fluid-sided stress, w the solid's test function, v_s its velocity:
 /// -(sigma(u,p) n, v - w) - (2 mu eps(v) n, u - v_s) - (q n, u - v_s) into `consistent`, and
 /// + (gamma_v mu / h (u - v_s), v - w) + (gamma_n phi / h (u - v_s).n, (v - w).n) into `penalty`.
 template <int dim>
-void add_interface(const Discretisation<dim>& disc, const Share& share, Triplets& consistent,
-                   Triplets& penalty);
+void add_interface(const Discretisation<dim>& disc, const Share& share,
+                   std::span<const PartGeometry<dim>> geometries, Triplets& consistent, Triplets& penalty);
 
 template <int dim>
 using SolidFactor = std::function<double(const SolidBody<dim>&)>;

@@ -9,11 +9,8 @@ namespace undula {
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Sums repeated entries into a matrix with `size` rows and columns.
-inline SparseMatrix compress(int size, const Triplets& triplets) {
-  SparseMatrix matrix(size, size);
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  return matrix;
-}
+/// Sums repeated entries, in their order, into a matrix with `size` rows and columns. Entries that sum to
+/// zero stay in the pattern.
+SparseMatrix compress(int size, const Triplets& triplets);
 
 } // namespace undula

@@ -1,7 +1,10 @@
 #include "fom/system/linear_system.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <string>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -9,18 +12,65 @@ namespace undula {
 
 namespace {
 
-/// Sum of all constant operators with the pattern of the whole, so that the pattern never depends on the
-/// factors.
+/// The operators with a factor in the system matrix.
 template <int dim>
-SparseMatrix constant_part(const Operators<dim>& operators, const SystemFactors& factors) {
-  SparseMatrix sum = operators.physical + operators.stabilisation;
-  sum = sum + factors.damping * operators.damping;
-  sum = sum + factors.mass * operators.mass;
-  sum = sum + factors.stiffness * operators.stiffness;
-  return sum;
+std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Operators<dim>& operators,
+                                                                     const SystemFactors& factors) {
+  return {{{&operators.physical, 1.0},
+           {&operators.stabilisation, 1.0},
+           {&operators.damping, factors.damping},
+           {&operators.mass, factors.mass},
+           {&operators.stiffness, factors.stiffness}}};
+}
+
+/// Adds the ascending columns of row `row` to the ascending `columns`, by way of `buffer`.
+void unite(const SparseMatrix& matrix, int row, std::vector<int>& columns, std::vector<int>& buffer) {
+  const int* begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[row];
+  const int* end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[row + 1];
+  buffer.clear();
+  std::set_union(columns.begin(), columns.end(), begin, end, std::back_inserter(buffer));
+  columns.swap(buffer);
 }
 
 } // namespace
+
+template <int dim>
+void LinearSystem<dim>::collect_pattern() {
+  const int size = disc_.unknowns();
+  std::vector<std::vector<int>> tangent_columns;
+  if (!operators_.nonlinear_cells.empty()) tangent_columns.resize(size);
+  for (const auto& cell : operators_.nonlinear_cells) {
+    const auto unknowns = cell_unknowns(disc_, cell);
+    for (const int row : unknowns)
+      tangent_columns[row].insert(tangent_columns[row].end(), unknowns.begin(), unknowns.end());
+  }
+  const auto terms = constant_terms(operators_, {});
+  row_begin_.assign(1, 0);
+  row_begin_.reserve(static_cast<std::size_t>(size) + 1);
+  columns_.clear();
+  std::vector<int> columns, buffer;
+  for (int row = 0; row < size; ++row) {
+    columns.clear();
+    for (const auto& [matrix, factor] : terms) unite(*matrix, row, columns, buffer);
+    if (!tangent_columns.empty() && !tangent_columns[row].empty()) {
+      columns.insert(columns.end(), tangent_columns[row].begin(), tangent_columns[row].end());
+      std::sort(columns.begin(), columns.end());
+      columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    }
+    // A diagonal entry for every unknown.
+    const auto diagonal = std::lower_bound(columns.begin(), columns.end(), row);
+    if (operators_.ownership.owner[row] == operators_.rank && (diagonal == columns.end() || *diagonal != row))
+      columns.insert(diagonal, row);
+    columns_.insert(columns_.end(), columns.begin(), columns.end());
+    row_begin_.push_back(static_cast<int>(columns_.size()));
+  }
+}
+
+template <int dim>
+int LinearSystem<dim>::place_of(int row, int column) const {
+  const auto begin = columns_.begin() + row_begin_[row], end = columns_.begin() + row_begin_[row + 1];
+  return static_cast<int>(std::lower_bound(begin, end, column) - columns_.begin());
+}
 
 template <int dim>
 LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators,
@@ -32,33 +82,23 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   const PetscInt own = operators.ownership.first[rank + 1] - operators.ownership.first[rank];
   const PetscInt size = disc.unknowns();
 
-  constant_ = constant_part(operators, {0, 0});
-  std::vector<PetscInt> rows, columns;
-  const auto add = [&](int row, int column) {
-    // Entries of constrained rows are given a negative index, which PETSc skips.
-    rows.push_back(disc.is_constrained[row] ? -1 : index[row]);
-    columns.push_back(index[column]);
-  };
-  for (int row = 0; row < constant_.outerSize(); ++row)
-    for (SparseMatrix::InnerIterator entry(constant_, row); entry; ++entry)
-      add(row, static_cast<int>(entry.col()));
-  for (int unknown = 0; unknown < size; ++unknown)
-    if (operators.ownership.owner[unknown] == rank) {
-      // A diagonal entry for every unknown: 1 for constrained ones, 0 (but in the pattern) for the others.
-      rows.push_back(index[unknown]);
-      columns.push_back(index[unknown]);
-    }
-  constant_entries_ = rows.size();
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(size);
-  if (disc.problem.flow == FlowModel::navier_stokes)
-    visit_convection(disc, operators, zero, [&](int row, int column, double) { add(row, column); });
-  tangents_begin_ = rows.size();
+  collect_pattern();
   for (const auto& cell : operators.nonlinear_cells) {
     const auto unknowns = cell_unknowns(disc, cell);
     for (const int column : unknowns)
-      for (const int row : unknowns) add(row, column);
+      for (const int row : unknowns) tangent_places_.push_back(place_of(row, column));
   }
-  values_.assign(rows.size(), 0.0);
+  // Every entry once: PETSc sorts and adds up what it is given, which costs more than assembling it.
+  std::vector<PetscInt> rows(columns_.size()), columns(columns_.size());
+  for (int row = 0; row < size; ++row)
+    for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k) {
+      // Of constrained rows the owner's diagonal alone stays; the others get a negative index, which PETSc
+      // skips.
+      const bool kept =
+          !disc.is_constrained[row] || (columns_[k] == row && operators.ownership.owner[row] == rank);
+      rows[k] = kept ? index[row] : -1;
+      columns[k] = index[columns_[k]];
+    }
 
   check_petsc(MatCreate(operators.comm, matrix_.out()), "creating the system matrix");
   check_petsc(MatSetSizes(matrix_.get(), own, own, size, size), "sizing the system matrix");
@@ -83,33 +123,80 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
 }
 
 template <int dim>
+void LinearSystem<dim>::sum_constant_terms(const SystemFactors& factors) {
+  constant_.assign(columns_.size(), 0.0);
+  for (const auto& [matrix, factor] : constant_terms(operators_, factors))
+    for (int row = 0; row < disc_.unknowns(); ++row) {
+      int place = row_begin_[row];
+      for (int k = matrix->outerIndexPtr()[row]; k < matrix->outerIndexPtr()[row + 1]; ++k) {
+        const int column = matrix->innerIndexPtr()[k];
+        while (columns_[place] < column) ++place; // the pattern holds every column of the operators
+        constant_[place] += factor * matrix->valuePtr()[k];
+      }
+    }
+}
+
+template <int dim>
 void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::VectorXd* b) {
   const auto scope = timer_.measure("assemble");
   if (!factors_ || !(*factors_ == factors)) {
-    constant_ = constant_part(operators_, factors);
-    std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), values_.begin());
-    auto value = values_.begin() + constant_.nonZeros();
-    for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
-      if (operators_.ownership.owner[unknown] == operators_.rank)
-        *value++ = disc_.is_constrained[unknown] ? 1.0 : 0.0;
+    sum_constant_terms(factors);
     factors_ = factors;
     factored_at_ = -1;
   }
-  std::size_t next = constant_entries_;
-  if (b && tangents_begin_ > constant_entries_)
-    visit_convection(disc_, operators_, *b, [&](int, int, double value) { values_[next++] = value; });
-  std::fill(values_.begin() + static_cast<std::ptrdiff_t>(next), values_.end(), 0.0);
-  check_petsc(MatSetValuesCOO(matrix_.get(), values_.data(), INSERT_VALUES), "filling the system matrix");
+  without_tangents_ = constant_;
+  if (b && has_convection(disc_)) {
+    if (convection_places_.empty())
+      visit_convection(disc_, operators_, *b, [&](int row, int column, double) {
+        convection_places_.push_back(place_of(row, column));
+      });
+    auto place = convection_places_.begin();
+    visit_convection(disc_, operators_, *b,
+                     [&](int, int, double value) { without_tangents_[*place++] += value; });
+  }
+  write(without_tangents_);
+}
+
+template <int dim>
+void LinearSystem<dim>::write(std::vector<double>& values) {
+  for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
+    if (disc_.is_constrained[unknown] && operators_.ownership.owner[unknown] == operators_.rank)
+      values[place_of(unknown, unknown)] = 1.0;
+  check_petsc(MatSetValuesCOO(matrix_.get(), values.data(), INSERT_VALUES), "filling the system matrix");
+}
+
+template <int dim>
+void LinearSystem<dim>::refresh() {
+  const auto same = [&] {
+    for (const auto& [matrix, factor] : constant_terms(operators_, {}))
+      for (int row = 0; row < disc_.unknowns(); ++row) {
+        int place = row_begin_[row];
+        for (int k = matrix->outerIndexPtr()[row]; k < matrix->outerIndexPtr()[row + 1]; ++k) {
+          while (place < row_begin_[row + 1] && columns_[place] < matrix->innerIndexPtr()[k]) ++place;
+          if (place == row_begin_[row + 1] || columns_[place] != matrix->innerIndexPtr()[k]) return false;
+        }
+      }
+    return true;
+  };
+  int fits = same();
+  check_petsc(
+      static_cast<PetscErrorCode>(MPI_Allreduce(MPI_IN_PLACE, &fits, 1, MPI_INT, MPI_LAND, operators_.comm)),
+      "comparing patterns");
+  if (!fits)
+    throw NumericsError("new operators have entries that the system matrix was not made for",
+                        "a refresh of the linear system", "a new linear system for every new cut");
+  factors_.reset();
 }
 
 template <int dim>
 void LinearSystem<dim>::replace_tangents(
     const std::vector<typename CellResponse<dim>::Derivatives>& tangents) {
   const auto scope = timer_.measure("assemble");
-  auto value = values_.begin() + static_cast<std::ptrdiff_t>(tangents_begin_);
+  std::vector<double> values = without_tangents_;
+  auto place = tangent_places_.begin();
   for (const auto& tangent : tangents)
-    value = std::copy(tangent.data(), tangent.data() + tangent.size(), value);
-  check_petsc(MatSetValuesCOO(matrix_.get(), values_.data(), INSERT_VALUES), "filling the system matrix");
+    for (Eigen::Index k = 0; k < tangent.size(); ++k) values[*place++] += tangent.data()[k];
+  write(values);
 }
 
 template <int dim>

@@ -31,6 +31,11 @@ public:
   /// Phase "assemble". Collective.
   void assemble(const SystemFactors& factors, const Eigen::VectorXd* b);
 
+  /// To be called when the operators' values have changed in place, as after a new map of the domain: the
+  /// next `assemble` reads all of them. Pattern and symbolic factorisation stay. Collective; throws
+  /// NumericsError on every rank if an entry has no place in the pattern.
+  void refresh();
+
   /// Replaces the tangents of the share's nonlinear cells and nothing else. Phase "assemble". Collective.
   void replace_tangents(const std::vector<typename CellResponse<dim>::Derivatives>& tangents);
 
@@ -44,14 +49,20 @@ public:
   Mat matrix() const { return matrix_.get(); }
 
 private:
+  void collect_pattern();
+  int place_of(int row, int column) const;
+  void sum_constant_terms(const SystemFactors& factors);
+  void write(std::vector<double>& values); ///< puts 1 on the diagonal of constrained rows
+
   const Discretisation<dim>& disc_;
   const Operators<dim>& operators_;
   PhaseTimer& timer_;
   int factor_every_;
   int factored_at_ = -1;
-  std::vector<double> values_; ///< constant entries, then convection entries, then tangents
-  std::size_t constant_entries_ = 0, tangents_begin_ = 0;
-  SparseMatrix constant_; ///< for the current factors
+  std::vector<int> row_begin_, columns_;                ///< pattern of this rank's share, natural numbering
+  std::vector<int> convection_places_, tangent_places_; ///< of visited entries in the pattern, in their order
+  std::vector<double> constant_;                        ///< for the current factors, by place in the pattern
+  std::vector<double> without_tangents_;                ///< with convection
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_;

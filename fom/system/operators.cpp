@@ -18,6 +18,21 @@ Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& dis
   return velocity;
 }
 
+namespace {
+
+/// Room for the entries of a single rank, so that the lists need not grow.
+template <int dim>
+void reserve_entries(const Discretisation<dim>& disc, Triplets& mass, Triplets& physical,
+                     Triplets& stabilisation) {
+  constexpr std::size_t nodes = dim + 1, pair = dim + 2, piece = nodes * nodes + dim * nodes * (dim + 2) / 2;
+  const std::size_t parts = disc.cut.parts.size(), pieces = disc.cut.interface.size();
+  mass.reserve(parts * nodes * nodes * dim);
+  physical.reserve(parts * nodes * nodes * (dim * dim + 2 * dim) + pieces * piece * piece);
+  stabilisation.reserve(disc.cut.connections.size() * pair * pair * (dim * dim + 1) + pieces * piece * piece);
+}
+
+} // namespace
+
 template <int dim>
 Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, PhaseTimer& timer) {
   const auto scope = timer.measure("assemble");
@@ -29,21 +44,29 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   operators.ownership = distribute_unknowns(disc, ranks);
   const Share share{&operators.ownership.owner, operators.rank};
 
-  operators.moments = part_moments(disc, share);
-  for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
-    operators.gradients.push_back(barycentric_gradients(disc.cut.mesh, disc.cut.parts[p].cell));
-    if (share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0)))
-      operators.own_parts.push_back(static_cast<int>(p));
-  }
+  const std::size_t parts = disc.cut.parts.size();
+  const auto geometries = part_geometries(disc);
+  operators.moments.assign(parts, PartMoments<dim>::value_type::Zero());
+  if (!disc.map.is_identity()) operators.widening = operators.moments;
   const int size = disc.unknowns();
   Triplets mass, physical, stabilisation, damping, stiffness;
-  add_fluid_mass(disc, operators.moments, mass);
+  reserve_entries(disc, mass, physical, stabilisation);
+  for (std::size_t p = 0; p < parts; ++p) {
+    operators.gradients.push_back(geometries[p].gradients);
+    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0))) continue;
+    const int part = static_cast<int>(p);
+    operators.own_parts.push_back(part);
+    const auto integrals = integrate_part(disc, part, geometries[p]);
+    operators.moments[p] = integrals.moments;
+    if (!disc.map.is_identity()) operators.widening[p] = integrals.widening;
+    add_fluid_mass(disc, part, integrals, mass);
+    add_fluid_viscosity_and_pressure(disc, part, geometries[p], integrals, physical);
+  }
   using Body = SolidBody<dim>;
   const SolidFactor<dim> everywhere = [](const Body&) { return 1.0; };
   add_solid_mass<dim>(disc, share, everywhere, mass);
-  add_fluid_viscosity_and_pressure(disc, share, physical);
-  add_fluid_stabilisation(disc, share, stabilisation);
-  add_interface(disc, share, physical, stabilisation);
+  add_fluid_stabilisation<dim>(disc, share, geometries, stabilisation);
+  add_interface<dim>(disc, share, geometries, physical, stabilisation);
   add_solid_mass<dim>(
       disc, share, [](const Body& body) { return body.properties.mass_damping; }, damping);
   add_solid_stiffness<dim>(

@@ -28,8 +28,9 @@ struct Operators {
   bool has_nonlinear_solid = false;       ///< on any rank
   std::vector<SolidCell> nonlinear_cells; ///< of the share
   PartMoments<dim> moments;
-  std::vector<int> own_parts;                                 ///< parts of the share
-  std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part
+  PartMoments<dim> widening;  ///< moments with the weight div w, w the velocity of the map; empty: identity
+  std::vector<int> own_parts; ///< parts of the share
+  std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part, moved
   std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
 };
 
@@ -42,11 +43,18 @@ template <int dim>
 Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& disc, int part,
                                                   const Eigen::VectorXd& x);
 
+/// Whether `visit_convection` has entries: fluid that convects, or a domain that moves by a map.
+template <int dim>
+bool has_convection(const Discretisation<dim>& disc) {
+  return disc.problem.flow == FlowModel::navier_stokes || !disc.map.is_identity();
+}
+
 /// Visits every entry (row, column, value) of the convection matrix for the convecting field `b`: the skew
-/// volume term of the share, the momentum carried through openings that ask for it (see OpeningCondition)
-/// and, where the interface moves through the background, the momentum it takes along: half of (rho b.n u,
-/// v), so that with the time derivative the energy of the moving domain is kept. The sequence of (row,
-/// column) does not depend on `b`.
+/// volume term of the share (on a domain that moves by a map with velocity w, of b - w, or in Stokes flow of
+/// -w alone, and rho/2 (div w u, v), so that the energy of the moving domain is kept), the momentum carried
+/// through openings that ask for it (see OpeningCondition) and, where the interface moves through the
+/// background, the momentum it takes along: half of (rho b.n u, v), so that with the time derivative the
+/// energy of the moving domain is kept. The sequence of (row, column) does not depend on `b`.
 template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
                       const Eigen::VectorXd& b, F&& f);
@@ -60,15 +68,21 @@ template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
                       const Eigen::VectorXd& b, F&& f) {
   const double density = disc.problem.fluid.density;
+  const bool convects = disc.problem.flow == FlowModel::navier_stokes, moved = !disc.map.is_identity();
+  if (!convects && !moved) return;
   for (const int part : operators.own_parts) {
     const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    const auto local = part_convection<dim>(density, operators.moments[part], operators.gradients[part],
-                                            part_velocity(disc, part, b));
+    Eigen::Matrix<double, dim, dim + 1> relative = Eigen::Matrix<double, dim, dim + 1>::Zero();
+    if (convects) relative = part_velocity(disc, part, b);
+    if (moved) relative -= domain_velocity(disc, part);
+    auto local = part_convection<dim>(density, operators.moments[part], operators.gradients[part], relative);
+    if (moved) local += 0.5 * density * operators.widening[part];
     for (int i = 0; i <= dim; ++i)
       for (int j = 0; j <= dim; ++j)
         for (int c = 0; c < dim; ++c)
           f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
   }
+  if (!convects) return;
   const Measure measure = measure_of(disc.problem.space);
   const Share share{&operators.ownership.owner, operators.rank};
   for (const auto& piece : disc.cut.boundary) {

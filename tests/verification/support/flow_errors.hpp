@@ -21,15 +21,14 @@ inline FlowErrors flow_errors(const Discretisation<2>& disc, const Eigen::Vector
   double volume = 0, mean_error = 0, mean_exact = 0;
   double velocity = 0, gradient = 0, pressure = 0, velocity_norm = 0, gradient_norm = 0, pressure_norm = 0;
   for (int part = 0; part < static_cast<int>(disc.cut.parts.size()); ++part) {
-    const int cell = disc.cut.parts[part].cell;
+    const auto geometry = part_geometry(disc, part);
     const auto& nodes = disc.fluid_nodes.part_dofs[part];
     Eigen::Matrix<double, 3, 3> values; // column per vertex: u, v, p
     for (int i = 0; i < 3; ++i) values.col(i) = x.segment<3>(disc.velocity_unknown(nodes[i], 0));
-    const Eigen::Matrix2d discrete_gradient =
-        values.topRows<2>() * barycentric_gradients(disc.cut.mesh, cell).transpose();
-    for_each_point(disc, part, rule, [&](const Point<2>& point, double w) {
+    const Eigen::Matrix2d discrete_gradient = values.topRows<2>() * geometry.gradients.transpose();
+    for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<2>& point, double w) {
       const auto exact = sample(flow, point);
-      const Eigen::Vector3d field = values * barycentric_coordinates(disc.cut.mesh, cell, point);
+      const Eigen::Vector3d field = values * lambda;
       const double difference = field[2] - exact.pressure;
       volume += w;
       mean_error += w * difference;

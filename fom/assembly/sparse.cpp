@@ -1,0 +1,45 @@
+#include "fom/assembly/sparse.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace undula {
+
+SparseMatrix compress(int size, const Triplets& triplets) {
+  // Entries by row, in their order; then row by row through an array of places by column. A step with a new
+  // cut does this for every operator, and Eigen's setFromTriplets sorts through two transpositions of the
+  // whole.
+  std::vector<int> begin(static_cast<std::size_t>(size) + 1, 0);
+  for (const auto& entry : triplets) ++begin[entry.row() + 1];
+  for (int row = 0; row < size; ++row) begin[row + 1] += begin[row];
+  std::vector<std::pair<int, double>> by_row(triplets.size());
+  std::vector<int> next(begin.begin(), begin.end() - 1);
+  for (const auto& entry : triplets) by_row[next[entry.row()]++] = {entry.col(), entry.value()};
+
+  std::vector<double> sum(size, 0.0);
+  std::vector<int> seen_in(size, -1), columns;
+  std::vector<int> outer(1, 0), inner;
+  std::vector<double> values;
+  outer.reserve(static_cast<std::size_t>(size) + 1);
+  for (int row = 0; row < size; ++row) {
+    columns.clear();
+    for (int k = begin[row]; k < begin[row + 1]; ++k) {
+      const auto& [column, value] = by_row[k];
+      if (seen_in[column] != row) {
+        seen_in[column] = row;
+        sum[column] = value;
+        columns.push_back(column);
+      } else {
+        sum[column] += value;
+      }
+    }
+    std::sort(columns.begin(), columns.end());
+    inner.insert(inner.end(), columns.begin(), columns.end());
+    for (const int column : columns) values.push_back(sum[column]);
+    outer.push_back(static_cast<int>(inner.size()));
+  }
+  return Eigen::Map<const SparseMatrix>(size, size, static_cast<Eigen::Index>(values.size()), outer.data(),
+                                        inner.data(), values.data());
+}
+
+} // namespace undula

@@ -1,0 +1,152 @@
+#include "fom/mapping/domain_extension.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "fom/mapping/weighted_laplace.hpp"
+
+namespace undula {
+
+namespace {
+
+/// Fluid nodes where the component's displacement vanishes.
+template <int dim>
+std::vector<char> nodes_at_rest(const Discretisation<dim>& disc, int component) {
+  using Kind = BoundaryCondition<dim>::Kind;
+  std::vector<char> at_rest(disc.fluid_nodes.dof_point.size(), 0);
+  for (const auto& piece : disc.cut.boundary) {
+    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
+    if (condition.kind == Kind::symmetry && component != 0) continue;
+    const int opposite = disc.cut.facets.facets[piece.facet].local[0];
+    for (int a = 0; a <= dim; ++a)
+      if (a != opposite) at_rest[disc.fluid_nodes.part_dofs[piece.part][a]] = 1;
+  }
+  return at_rest;
+}
+
+/// Rows and columns of nodes at rest replaced by the identity.
+void hold(const std::vector<char>& at_rest, SparseMatrix& matrix) {
+  for (int row = 0; row < matrix.outerSize(); ++row)
+    for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
+      if (at_rest[row] || at_rest[entry.col()]) entry.valueRef() = entry.col() == row ? 1.0 : 0.0;
+}
+
+/// A trace of a zeroth-order term, for nodes that no skin is connected with.
+void keep_regular(SparseMatrix& matrix) {
+  for (int row = 0; row < matrix.outerSize(); ++row) matrix.coeffRef(row, row) *= 1 + 1e-13;
+}
+
+void expect_factored(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factors) {
+  if (factors.info() != Eigen::Success)
+    throw NumericsError("the extension of the solids' displacement into the fluid could not be factored",
+                        "preparing the map of the domain", "another mesh size near the solids");
+}
+
+/// Weights |grad reach|^(p - 2) by part from the slopes of the iterate, scaled and kept within bounds, and
+/// averaged (geometrically) over neighbouring parts: single elements must not decide.
+template <int dim>
+std::vector<double> slope_weights(const Discretisation<dim>& disc,
+                                  std::span<const PartGeometry<dim>> geometries, const Point<dim>& axes,
+                                  const Eigen::VectorXd& reach, double exponent) {
+  const std::size_t parts = disc.cut.parts.size();
+  std::vector<double> slopes(parts);
+  for (std::size_t p = 0; p < parts; ++p) {
+    Point<dim> slope = Point<dim>::Zero();
+    for (int a = 0; a <= dim; ++a)
+      slope += reach[disc.fluid_nodes.part_dofs[p][a]] * geometries[p].reference_gradients.col(a);
+    slopes[p] = std::sqrt(slope.cwiseAbs2().dot(axes));
+  }
+  auto sorted = slopes;
+  const auto steep = sorted.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(parts - 1));
+  std::nth_element(sorted.begin(), steep, sorted.end());
+  // Bounds on the weights, 1e-8 .. 1e6, whatever the exponent.
+  const double low = std::pow(1e-8, 1 / (exponent - 2)), high = std::pow(1e6, 1 / (exponent - 2));
+  const std::size_t nodes = disc.fluid_nodes.dof_point.size();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(nodes), count = Eigen::VectorXd::Zero(nodes);
+  for (std::size_t p = 0; p < parts; ++p)
+    for (const int node : disc.fluid_nodes.part_dofs[p]) {
+      sum[node] += std::log(std::clamp(slopes[p] / *steep, low, high));
+      count[node] += 1;
+    }
+  std::vector<double> weights(parts);
+  for (std::size_t p = 0; p < parts; ++p) {
+    double mean = 0;
+    for (const int node : disc.fluid_nodes.part_dofs[p]) mean += sum[node] / count[node] / (dim + 1);
+    weights[p] = std::exp((exponent - 2) * mean);
+  }
+  return weights;
+}
+
+/// See domain_extension.hpp. Reweighted least squares with damping 1 / (p - 1), which is Newton's step along
+/// the slope, for p = 4, 8, ... up to the exponent.
+template <int dim>
+Eigen::VectorXd reach_of(const Discretisation<dim>& disc, std::span<const PartGeometry<dim>> geometries,
+                         int component, const ExtensionSettings& settings) {
+  const auto at_rest = nodes_at_rest(disc, component);
+  Point<dim> axes = Point<dim>::Constant(settings.shear_weight);
+  axes[component] = 1;
+  std::vector<double> weights(disc.cut.parts.size(), 1.0);
+  typename DomainExtension<dim>::Factors factors;
+  bool analysed = false;
+  const auto solve = [&] {
+    auto problem = weighted_laplace<dim>(disc, geometries, weights, axes);
+    Eigen::VectorXd rhs = problem.data * Eigen::VectorXd::Ones(problem.data.cols());
+    for (Eigen::Index node = 0; node < rhs.size(); ++node)
+      if (at_rest[node]) rhs[node] = 0;
+    hold(at_rest, problem.matrix);
+    keep_regular(problem.matrix);
+    const Eigen::SparseMatrix<double> matrix = problem.matrix;
+    if (!analysed) factors.analyzePattern(matrix);
+    analysed = true;
+    factors.factorize(matrix);
+    expect_factored(factors);
+    return Eigen::VectorXd(factors.solve(rhs));
+  };
+  Eigen::VectorXd reach = solve();
+  for (double exponent = 4; settings.exponent > 2; exponent = std::min(2 * exponent, settings.exponent)) {
+    for (int sweep = 0; sweep < settings.sweeps; ++sweep) {
+      weights = slope_weights<dim>(disc, geometries, axes, reach, exponent);
+      reach += (solve() - reach) / (exponent - 1);
+    }
+    if (exponent >= settings.exponent) break;
+  }
+  return reach;
+}
+
+} // namespace
+
+template <int dim>
+DomainExtension<dim> prepare_extension(const Discretisation<dim>& disc, const ExtensionSettings& settings) {
+  DomainExtension<dim> extension;
+  const auto geometries = part_geometries(disc);
+  const std::vector<double> even(disc.cut.parts.size(), 1.0);
+  auto problem = weighted_laplace<dim>(disc, geometries, even, Point<dim>::Ones());
+  keep_regular(problem.matrix);
+  extension.smooth =
+      std::make_unique<typename DomainExtension<dim>::Factors>(Eigen::SparseMatrix<double>(problem.matrix));
+  expect_factored(*extension.smooth);
+  extension.data = problem.data;
+  for (int c = 0; c < dim; ++c) extension.reach[c] = reach_of<dim>(disc, geometries, c, settings);
+  return extension;
+}
+
+template <int dim>
+std::vector<Point<dim>> extend(const DomainExtension<dim>& extension,
+                               const Eigen::VectorXd& solid_displacement) {
+  std::vector<Point<dim>> displacement(extension.reach[0].size());
+  for (int c = 0; c < dim; ++c) {
+    const Eigen::VectorXd on_solids = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<dim>>(
+        solid_displacement.data() + c, solid_displacement.size() / dim);
+    const Eigen::VectorXd smooth = extension.smooth->solve(extension.data * on_solids);
+    for (std::size_t node = 0; node < displacement.size(); ++node)
+      displacement[node][c] = extension.reach[c][node] * smooth[node];
+  }
+  return displacement;
+}
+
+template struct DomainExtension<2>;
+template DomainExtension<2> prepare_extension(const Discretisation<2>&, const ExtensionSettings&);
+template std::vector<Point<2>> extend(const DomainExtension<2>&, const Eigen::VectorXd&);
+
+} // namespace undula

@@ -1,0 +1,26 @@
+// Scalar diffusion on the fluid's nodes of a cut, with given values on the skin of the solids.
+#pragma once
+
+#include <vector>
+
+#include "fom/assembly/part_geometry.hpp"
+#include "fom/assembly/sparse.hpp"
+
+namespace undula {
+
+/// -div(K grad y) = 0 in the fluid at rest, K = weight * diag(axes) with one weight per part, y = g on the
+/// skin by Nitsche's method with ghost penalty, free on the boundary. Plain integrals: no factor r in
+/// axisymmetric space.
+template <int dim>
+struct WeightedLaplace {
+  SparseMatrix matrix; ///< fluid nodes x fluid nodes, symmetric, positive where a skin is in reach
+  SparseMatrix data;   ///< fluid nodes x solid nodes (of all solids in a row): right-hand side = data * g
+};
+
+/// `weights` by part, positive.
+template <int dim>
+WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
+                                      std::span<const PartGeometry<dim>> geometries,
+                                      std::span<const double> weights, const Point<dim>& axes);
+
+} // namespace undula
