@@ -43,14 +43,16 @@ void expect_factored(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& f
                         "preparing the map of the domain", "another mesh size near the solids");
 }
 
-/// Weights |grad reach|^(p - 2) by part from the slopes of the iterate, scaled and kept within bounds, and
-/// averaged (geometrically) over neighbouring parts: single elements must not decide.
+/// Weights |grad reach|^(p - 2) by part from the slopes of the iterate, scaled and kept within bounds. Half
+/// by the part's own slope, half by its neighbours' (geometric means): with its own alone the iteration may
+/// end in a pattern of stiff and soft elements, with the neighbours' alone the element at a corner stays too
+/// steep.
 template <int dim>
 std::vector<double> slope_weights(const Discretisation<dim>& disc,
                                   std::span<const PartGeometry<dim>> geometries, const Point<dim>& axes,
                                   const Eigen::VectorXd& reach, double exponent) {
   const std::size_t parts = disc.cut.parts.size();
-  std::vector<double> slopes(parts);
+  std::vector<double> slopes(parts), logarithms(parts);
   for (std::size_t p = 0; p < parts; ++p) {
     Point<dim> slope = Point<dim>::Zero();
     for (int a = 0; a <= dim; ++a)
@@ -64,16 +66,18 @@ std::vector<double> slope_weights(const Discretisation<dim>& disc,
   const double low = std::pow(1e-8, 1 / (exponent - 2)), high = std::pow(1e6, 1 / (exponent - 2));
   const std::size_t nodes = disc.fluid_nodes.dof_point.size();
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(nodes), count = Eigen::VectorXd::Zero(nodes);
-  for (std::size_t p = 0; p < parts; ++p)
+  for (std::size_t p = 0; p < parts; ++p) {
+    logarithms[p] = std::log(std::clamp(slopes[p] / *steep, low, high));
     for (const int node : disc.fluid_nodes.part_dofs[p]) {
-      sum[node] += std::log(std::clamp(slopes[p] / *steep, low, high));
+      sum[node] += logarithms[p];
       count[node] += 1;
     }
+  }
   std::vector<double> weights(parts);
   for (std::size_t p = 0; p < parts; ++p) {
     double mean = 0;
     for (const int node : disc.fluid_nodes.part_dofs[p]) mean += sum[node] / count[node] / (dim + 1);
-    weights[p] = std::exp((exponent - 2) * mean);
+    weights[p] = std::exp(0.5 * (exponent - 2) * (logarithms[p] + mean));
   }
   return weights;
 }

@@ -22,9 +22,9 @@
 namespace undula {
 
 struct ExtensionSettings {
-  double exponent = 16;      ///< p of the reach; 2 with shear_weight 1: harmonic
+  double exponent = 64;      ///< p of the reach; 2 with shear_weight 1: harmonic
   double shear_weight = 0.1; ///< of squared slopes across the component's axis, in (0, 1]
-  int sweeps = 12;           ///< linear problems per doubling of the exponent
+  int sweeps = 8;            ///< linear problems per doubling of the exponent
 };
 
 template <int dim>

@@ -82,9 +82,29 @@ void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& ope
         for (int c = 0; c < dim; ++c)
           f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
   }
-  if (!convects) return;
   const Measure measure = measure_of(disc.problem.space);
   const Share share{&operators.ownership.owner, operators.rank};
+  if (!convects) {
+    for (const auto& piece : disc.cut.interface) {
+      const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
+      if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+      const auto geometry = part_geometry(disc, piece.part);
+      const auto velocity = domain_velocity(disc, piece.part);
+      const Point<dim> area_vector = geometry.cofactor * piece.normal;
+      Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
+      for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+        const auto lambda = geometry.barycentric(disc.cut.interface_quadrature.points[q]);
+        const double through = -area_vector.dot(velocity * lambda);
+        local += 0.5 * density * disc.cut.interface_quadrature.weights[q] *
+                 measure(geometry.corners.row(0).dot(lambda)) * through * lambda * lambda.transpose();
+      }
+      for (int i = 0; i <= dim; ++i)
+        for (int j = 0; j <= dim; ++j)
+          for (int c = 0; c < dim; ++c)
+            f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+    }
+    return;
+  }
   for (const auto& piece : disc.cut.boundary) {
     const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
     if (condition.kind != BoundaryCondition<dim>::Kind::opening ||
