@@ -48,6 +48,11 @@ WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
         matrix.emplace_back(nodes[i], nodes[j], ghost_penalty * conductance * h * area * jump[i] * jump[j]);
   }
 
+  // The penalty has to hold the skin against the stiffest element around, else a soft one lets go of it.
+  std::vector<double> stiffest(disc.fluid_nodes.dof_point.size(), 0.0);
+  for (std::size_t p = 0; p < cut.parts.size(); ++p)
+    for (const int node : disc.fluid_nodes.part_dofs[p])
+      stiffest[node] = std::max(stiffest[node], weights[p]);
   for (const auto& piece : cut.interface) {
     const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
     const auto& solid_nodes = disc.solid_spaces[piece.solid].cell_nodes[piece.solid_cell];
@@ -56,7 +61,9 @@ WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
     const double h = cell_diameter(cut.mesh, cut.parts[piece.part].cell);
     const Point<dim> conormal = axes.cwiseProduct(piece.normal);
     const double weight = weights[piece.part];
-    const double penalty = nitsche_penalty * weight * conormal.dot(piece.normal) / h;
+    double around = 0;
+    for (const int node : nodes) around = std::max(around, stiffest[node]);
+    const double penalty = nitsche_penalty * around * conormal.dot(piece.normal) / h;
     const Eigen::Matrix<double, dim + 1, 1> flux =
         weight * (geometry.reference_gradients.transpose() * conormal);
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {

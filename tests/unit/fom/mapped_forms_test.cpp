@@ -67,7 +67,10 @@ TEST_P(MappedForms, AreThoseOfTheMovedMesh) {
     const SparseMatrix mass_a = a.mass.topLeftCorner(fluid, fluid),
                        mass_b = b.mass.topLeftCorner(fluid, fluid);
     EXPECT_LT(difference(mass_b, mass_a), 1e-12);
-    EXPECT_LT(difference(b.physical, a.physical), 1e-12); // with the interface, rows and columns of the solid
+    // 1/r is integrated to the accuracy of the rule, and the moved mesh may divide its cut elements
+    // otherwise.
+    EXPECT_LT(difference(b.physical, a.physical),
+              GetParam() == Space::plane ? 1e-12 : 1e-8); // with the interface, rows and columns of the solid
     if (scale[0] == scale[1]) {
       EXPECT_LT(difference(b.stabilisation, a.stabilisation), 1e-12);
     }

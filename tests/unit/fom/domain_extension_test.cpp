@@ -1,0 +1,195 @@
+// The extension of the solids' motion into the fluid: what it reproduces, and how far gaps close before it
+// folds.
+#include "fom/mapping/domain_extension.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdio>
+#include <limits>
+
+#include "fom/assembly/part_geometry.hpp"
+#include "geometry/pump.hpp"
+#include "tests/verification/support/channel_problem.hpp"
+
+namespace undula {
+namespace {
+
+using namespace verification;
+using Sizes = ChannelSizes;
+using Profile = std::function<Point<2>(const Point<2>&)>;
+
+const ExtensionSettings harmonic{2, 1, 0};
+
+Eigen::VectorXd solid_displacement(const Discretisation<2>& disc, const Profile& profile) {
+  Eigen::VectorXd d(disc.solid_unknowns());
+  Eigen::Index at = 0;
+  for (const auto& space : disc.solid_spaces)
+    for (const auto& x : space.nodes) {
+      d.segment<2>(at) = profile(x);
+      at += 2;
+    }
+  return d;
+}
+
+/// Multiple of the displacement at which an element folds. J is linear in an axial displacement.
+double folding_multiple(Discretisation<2>& disc, const DomainExtension<2>& extension,
+                        const Eigen::VectorXd& displacement) {
+  disc.map.displacement = extend(extension, displacement);
+  return 1 / (1 - smallest_volume_ratio(disc));
+}
+
+/// Multiple of an axial displacement at which a vertex of the first solid's skin meets a wall above or below.
+double closing_multiple(const Discretisation<2>& disc, const Profile& profile) {
+  const auto& background = disc.problem.background;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& facet : disc.problem.solids[0].mesh.boundary)
+    for (const int point : facet.points) {
+      const Point<2> x = disc.problem.solids[0].mesh.points[point];
+      const double way = profile(x)[1];
+      for (const auto& wall : background.boundary) {
+        const auto &a = background.points[wall.points[0]], &b = background.points[wall.points[1]];
+        if ((a[0] - x[0]) * (b[0] - x[0]) > 0 || a[0] == b[0]) continue;
+        const double height = a[1] + (b[1] - a[1]) * (x[0] - a[0]) / (b[0] - a[0]) - x[1];
+        if (height * way > 0) smallest = std::min(smallest, height / way);
+      }
+    }
+  return smallest;
+}
+
+Discretisation<2> plate_in_channel(Space space) {
+  return discretise(channel_with_plate(space), CutOptions{});
+}
+
+Discretisation<2> pump(double gap_elements) {
+  const auto profile =
+      read_pump_profile(std::string(UNDULA_SOURCE_DIR) + "/data/profiles/wave_pump_profile.toml");
+  const PumpMeshSizes sizes{gap_elements, 0.08, 0.04, 0.3};
+  FsiProblem<2> problem;
+  problem.space = Space::axisymmetric;
+  problem.fluid = {1.0, 0.035};
+  problem.stabilisation = default_weights(100, 1e-4);
+  problem.background = pump_background(profile, sizes);
+  using Kind = BoundaryCondition<2>::Kind;
+  for (const auto& name : problem.background.boundary_names)
+    problem.boundary[name].kind = name == "axis"                              ? Kind::symmetry
+                                  : name == inlet_name || name == outlet_name ? Kind::opening
+                                                                              : Kind::velocity;
+  for (auto mesh : {pump_membrane(profile, sizes), pump_magnet(profile, sizes)}) {
+    SolidBody<2> body;
+    body.mesh = std::move(mesh);
+    body.properties = {1, 1e6, 0.3, 0.0};
+    problem.solids.push_back(std::move(body));
+  }
+  return discretise(std::move(problem), CutOptions{});
+}
+
+/// Largest distance between the map of the fluid and the displaced skin, over the skin's quadrature points,
+/// and its root mean square. cm.
+std::pair<double, double> mismatch(const Discretisation<2>& disc, const Eigen::VectorXd& displacement) {
+  double largest = 0, squared = 0, length = 0;
+  for (const auto& piece : disc.cut.interface) {
+    const auto geometry = part_geometry(disc, piece.part);
+    const auto& nodes = disc.solid_spaces[piece.solid].cell_nodes[piece.solid_cell];
+    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+      const auto& place = disc.cut.interface_quadrature.points[q];
+      const auto shape = quadratic_values<2>(
+          barycentric_coordinates(disc.placed_solids[piece.solid], piece.solid_cell, place));
+      Point<2> moved = place;
+      for (std::size_t k = 0; k < nodes.size(); ++k)
+        moved += shape[k] * displacement.segment<2>(disc.solid_unknown(piece.solid, nodes[k], 0) -
+                                                    disc.fluid_unknowns());
+      const double distance = (geometry.corners * geometry.barycentric(place) - moved).norm();
+      largest = std::max(largest, distance);
+      squared += disc.cut.interface_quadrature.weights[q] * distance * distance;
+      length += disc.cut.interface_quadrature.weights[q];
+    }
+  }
+  return {largest, std::sqrt(squared / length)};
+}
+
+TEST(DomainExtension, VanishesOnTheBoundaryAndSlidesAlongTheAxis) {
+  auto disc = plate_in_channel(Space::axisymmetric);
+  const auto extension = prepare_extension(disc);
+  const auto displacement =
+      solid_displacement(disc, [](const Point<2>& x) { return Point<2>(0.01 * x[0], 0.1 + 0.05 * x[0]); });
+  const auto field = extend(extension, displacement);
+  double on_axis = 0;
+  for (std::size_t node = 0; node < field.size(); ++node) {
+    const auto& x = disc.cut.mesh.points[disc.fluid_nodes.dof_point[node]];
+    if (x[0] == 0) {
+      EXPECT_EQ(field[node][0], 0.0);
+    }
+    if (x[1] == 0 || x[1] == Sizes::height || x[0] == Sizes::radius) {
+      EXPECT_EQ(field[node].norm(), 0.0);
+    }
+    if (x[0] == 0) on_axis = std::max(on_axis, field[node][1]);
+  }
+  EXPECT_GT(on_axis, 0.01);
+  // Linear in the displacement.
+  const auto twice = extend(extension, Eigen::VectorXd(2 * displacement));
+  for (std::size_t node = 0; node < field.size(); ++node)
+    EXPECT_LT((twice[node] - 2 * field[node]).norm(), 1e-13);
+}
+
+TEST(DomainExtension, FoldsOnlyWhenAGapCloses) {
+  auto disc = plate_in_channel(Space::plane);
+  const auto extension = prepare_extension(disc), plain = prepare_extension(disc, harmonic);
+  for (const double direction : {1.0, -1.0}) {
+    const Profile profile = [&](const Point<2>&) { return Point<2>(0.0, direction); };
+    const auto displacement = solid_displacement(disc, profile);
+    const double closed = closing_multiple(disc, profile);
+    const double folds_plain = folding_multiple(disc, plain, displacement) / closed;
+    const double folds = folding_multiple(disc, extension, displacement) / closed;
+    const auto [largest, mean] = mismatch(disc, displacement);
+    std::printf(
+        "plate %+.0f: gap %.4f cm; folds at %.3f of it, harmonic %.3f; off the skin by at most %.4f, rms "
+        "%.4f of the displacement\n",
+        direction, closed, folds, folds_plain, largest, mean);
+    EXPECT_GT(folds, 0.9);
+    EXPECT_LT(folds_plain, 0.8);
+    EXPECT_LT(mean, 0.03);
+  }
+}
+
+/// The pump's membrane bent at its tip, and carried as a whole with its holder.
+TEST(DomainExtension, FoldsOnlyWhenAGapClosesInThePump) {
+  for (const double elements : {3.0, 5.0}) {
+    auto disc = pump(elements);
+    const auto start = std::chrono::steady_clock::now();
+    const auto extension = prepare_extension(disc);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto plain = prepare_extension(disc, harmonic);
+    std::printf("pump, %.0f elements per gap, %zu fluid nodes: prepared in %.2f s\n", elements,
+                disc.fluid_nodes.dof_point.size(), seconds);
+    double tip = std::numeric_limits<double>::infinity(), rim = 0;
+    for (const auto& x : disc.problem.solids[0].mesh.points) {
+      tip = std::min(tip, x[0]);
+      rim = std::max(rim, x[0]);
+    }
+    for (const bool bends : {true, false})
+      for (const double direction : {1.0, -1.0}) {
+        const Profile profile = [&](const Point<2>& x) {
+          const double part = bends ? std::max(0.0, (rim - x[0]) / (rim - tip)) : 1.0;
+          return Point<2>(0.0, direction * part * part);
+        };
+        const auto displacement = solid_displacement(disc, profile);
+        const double closed = closing_multiple(disc, profile);
+        const double folds_plain = folding_multiple(disc, plain, displacement) / closed;
+        const double folds = folding_multiple(disc, extension, displacement) / closed;
+        const auto [largest, mean] = mismatch(disc, displacement);
+        std::printf(
+            "  %s %+.0f: gap %.4f cm; folds at %.3f of it, harmonic %.3f; off the skin by at most %.4f, "
+            "rms %.4f of the displacement\n",
+            bends ? "bent   " : "carried", direction, closed, folds, folds_plain, largest, mean);
+        EXPECT_GT(folds, bends ? 0.85 : 0.97);
+        if (!bends) {
+          EXPECT_GT(folds, 1.1 * folds_plain);
+        }
+        EXPECT_LT(mean, 0.02);
+      }
+  }
+}
+
+} // namespace
+} // namespace undula
