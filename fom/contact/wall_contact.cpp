@@ -10,7 +10,7 @@ namespace undula {
 namespace {
 
 /// Part of the film below which the barrier goes on as its tangent.
-constexpr double tangent_below = 0.05;
+constexpr double tangent_below = 0.01;
 
 } // namespace
 
@@ -23,37 +23,10 @@ FilmPressure film_pressure(const ContactSettings& settings, double gap) {
 
 template <int dim>
 WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactSettings& settings) {
+  static_assert(dim == 2);
   WallContact<dim> contact;
   contact.settings = settings;
-  const Measure measure = measure_of(disc.problem.space);
-  std::map<int, typename WallContact<dim>::SkinNode> skin; // by unknown
-  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
-    const auto& mesh = disc.problem.solids[s].mesh;
-    const auto& space = disc.solid_spaces[s];
-    const auto facets = build_facet_table(mesh);
-    for (const auto& facet : facets.facets) {
-      if (facet.cells[1] >= 0) continue;
-      const auto& g = barycentric_gradients(mesh, facet.cells[0]);
-      const double area = dim * cell_measure(mesh, facet.cells[0]) * g.col(facet.local[0]).norm();
-      // Simpson's rule on the quadratic nodes of an edge: vertices 1/6, mid-point 4/6.
-      static_assert(dim == 2);
-      const auto& cell = mesh.cells[facet.cells[0]];
-      const auto local_of = [&](int point) {
-        return static_cast<int>(std::find(cell.begin(), cell.end(), point) - cell.begin());
-      };
-      const int a = local_of(facet.points[0]), b = local_of(facet.points[1]);
-      const int middle = dim + std::min(a, b) + std::max(a, b); // edges (0,1), (0,2), (1,2)
-      const auto& nodes = space.cell_nodes[facet.cells[0]];
-      for (const auto& [local, weight] : {std::pair{a, 1.0 / 6}, {b, 1.0 / 6}, {middle, 4.0 / 6}}) {
-        const int unknown = disc.solid_unknown(static_cast<int>(s), nodes[local], 0);
-        if (disc.is_constrained[unknown]) continue;
-        auto& node = skin[unknown - disc.fluid_unknowns()];
-        node.unknown = unknown - disc.fluid_unknowns();
-        node.at_rest = space.nodes[nodes[local]];
-        node.area += weight * area * measure(node.at_rest[0]);
-      }
-    }
-  }
+  contact.axisymmetric = disc.problem.space == Space::axisymmetric;
   const auto facets = build_facet_table(disc.problem.background);
   for (const auto& facet : facets.facets) {
     if (facet.cells[1] >= 0) continue;
@@ -65,8 +38,36 @@ WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactS
     wall.normal =
         barycentric_gradients(disc.problem.background, facet.cells[0]).col(facet.local[0]).normalized();
   }
-  for (const auto& [unknown, node] : skin)
-    if (gap_to_walls<dim>(contact, node.at_rest).distance > settings.film) contact.skin.push_back(node);
+  std::map<int, int> index_of; // by unknown; -1: takes no part
+  const auto skin_node = [&](int solid, int node) {
+    const int unknown = disc.solid_unknown(solid, node, 0);
+    const auto [found, is_new] = index_of.try_emplace(unknown, -1);
+    const auto& at_rest = disc.solid_spaces[solid].nodes[node];
+    if (is_new && !disc.is_constrained[unknown] &&
+        gap_to_walls<dim>(contact, at_rest).distance > settings.film) {
+      found->second = static_cast<int>(contact.skin.size());
+      contact.skin.push_back({unknown - disc.fluid_unknowns(), at_rest});
+    }
+    return found->second;
+  };
+  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
+    const int solid = static_cast<int>(s);
+    const auto& mesh = disc.problem.solids[s].mesh;
+    for (const auto& facet : build_facet_table(mesh).facets) {
+      if (facet.cells[1] >= 0) continue;
+      // Opposite vertex k: the edge from k + 1 to k + 2 has the cell on its left.
+      const int first = (facet.local[0] + 1) % 3, last = (facet.local[0] + 2) % 3;
+      const int middle = dim + first + last; // edges (0,1), (0,2), (1,2) follow the vertices
+      const auto& nodes = disc.solid_spaces[s].cell_nodes[facet.cells[0]];
+      auto& edge = contact.edges.emplace_back();
+      edge.nodes = {skin_node(solid, nodes[first]), skin_node(solid, nodes[last]),
+                    skin_node(solid, nodes[middle])};
+      for (const auto& [k, local] : {std::pair{0, first}, {1, last}}) {
+        edge.unknowns[k] = disc.solid_unknown(solid, nodes[local], 0) - disc.fluid_unknowns();
+        edge.at_rest[k] = disc.solid_spaces[s].nodes[nodes[local]];
+      }
+    }
+  }
   return contact;
 }
 
@@ -102,22 +103,46 @@ double smallest_gap(const WallContact<dim>& contact, const Eigen::VectorXd& plac
   return smallest;
 }
 
+namespace {
+
+/// Area vectors of the skin's nodes, out of the solids where they are placed: Simpson's rule on every edge.
+template <int dim>
+std::vector<Point<dim>> node_areas(const WallContact<dim>& contact, const Eigen::VectorXd& placement) {
+  const Measure measure{contact.axisymmetric};
+  std::vector<Point<dim>> areas(contact.skin.size(), Point<dim>::Zero());
+  for (const auto& edge : contact.edges) {
+    const Point<dim> a = edge.at_rest[0] + placement.template segment<dim>(edge.unknowns[0]),
+                     b = edge.at_rest[1] + placement.template segment<dim>(edge.unknowns[1]);
+    const Point<dim> outward(b[1] - a[1], a[0] - b[0]);
+    const std::array<double, 3> weights = {measure(a[0]) / 6, measure(b[0]) / 6,
+                                           4 * measure(0.5 * (a[0] + b[0])) / 6};
+    for (int k = 0; k < 3; ++k)
+      if (edge.nodes[k] >= 0) areas[edge.nodes[k]] += weights[k] * outward;
+  }
+  return areas;
+}
+
+} // namespace
+
 template <int dim>
 ContactForce contact_force(const WallContact<dim>& contact, const Discretisation<dim>& disc,
                            const Eigen::VectorXd& placement) {
   ContactForce force;
   force.load = Eigen::VectorXd::Zero(disc.unknowns());
   Triplets entries;
-  for (const auto& node : contact.skin) {
+  const auto areas = node_areas(contact, placement);
+  for (std::size_t k = 0; k < contact.skin.size(); ++k) {
+    const auto& node = contact.skin[k];
     const Point<dim> displacement = placement.template segment<dim>(node.unknown);
     const auto gap = gap_to_walls<dim>(contact, node.at_rest + displacement);
-    if (gap.distance >= contact.settings.film) continue;
+    const double area = -areas[k].dot(gap.direction);
+    if (gap.distance >= contact.settings.film || area <= 0) continue;
     ++force.nodes;
     const auto film = film_pressure(contact.settings, gap.distance);
     const int unknown = disc.fluid_unknowns() + node.unknown;
-    const double stiffness = -node.area * film.slope;
+    const double stiffness = -area * film.slope;
     force.load.template segment<dim>(unknown) +=
-        (node.area * film.pressure + stiffness * gap.direction.dot(displacement)) * gap.direction;
+        (area * film.pressure + stiffness * gap.direction.dot(displacement)) * gap.direction;
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)
         entries.emplace_back(unknown + i, unknown + j, stiffness * gap.direction[i] * gap.direction[j]);

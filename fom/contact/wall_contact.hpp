@@ -16,13 +16,20 @@ namespace undula {
 template <int dim>
 struct WallContact {
   ContactSettings settings;
+  bool axisymmetric = false;
   struct SkinNode {
     int unknown = -1; ///< of component 0 among the solids' unknowns
-    double area = 0;  ///< cm^(dim-1) at rest, with the measure
     Point<dim> at_rest;
   };
   /// Free nodes. Those that are within the film of a wall at rest are left out: there a solid is attached.
   std::vector<SkinNode> skin;
+  /// An edge of the skin with its vertices, the solid on their left, and its three quadratic nodes.
+  struct SkinEdge {
+    std::array<int, 2> unknowns; ///< of the vertices, component 0 among the solids' unknowns
+    std::array<Point<dim>, 2> at_rest;
+    std::array<int, 3> nodes; ///< first, last, middle: index into `skin`, -1: takes no part
+  };
+  std::vector<SkinEdge> edges;
   struct Wall {
     std::array<Point<dim>, dim> points;
     Point<dim> normal; ///< into the fluid

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "fom/assembly/part_geometry.hpp"
 
 namespace undula {
 
@@ -17,6 +18,10 @@ MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& ope
                                   PhaseTimer& timer, const State& state)
     : disc_(disc), operators_(operators), coupling_(coupling), settings_(settings), dt_(dt), timer_(timer) {
   if (contact.film > 0) contact_ = prepare_contact(disc_, contact);
+  if (coupling_ == Coupling::mapped) {
+    const auto scope = timer_.measure("map");
+    extension_ = prepare_extension(disc_);
+  }
   restore(state);
   if (state.x[0].size() != disc_.unknowns())
     throw InputError("the state does not fit the cut at its placement",
@@ -26,9 +31,14 @@ MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& ope
 
 template <int dim>
 void MovingStepper<dim>::restore(const State& state) {
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(disc_.solid_unknowns());
-  {
+  if (coupling_ == Coupling::mapped) {
+    disc_.map = {};
+    for (Eigen::Index at = 0; at < state.map[0].size(); at += dim)
+      disc_.map.displacement.push_back(state.map[0].template segment<dim>(at));
+    disc_.map.velocity.assign(disc_.map.displacement.size(), Point<dim>::Zero());
+  } else {
     const auto scope = timer_.measure("cut");
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(disc_.solid_unknowns());
     disc_ = recut(disc_, state.placement.size() > 0 ? state.placement : rest, cut_options_);
   }
   operators_ = build_operators(disc_, operators_.comm, timer_);
@@ -59,6 +69,55 @@ void MovingStepper<dim>::check_walls(const Eigen::VectorXd& displacement, const 
 }
 
 template <int dim>
+void MovingStepper<dim>::place_cut(const Eigen::VectorXd& placement, const State& before,
+                                   Discretisation<dim>& origin, State& state) {
+  const auto scope = timer_.measure("cut");
+  auto next = recut(disc_, placement, cut_options_);
+  if (origin.cut.parts.empty()) origin = std::move(disc_);
+  disc_ = std::move(next);
+  const FieldTransfer<dim> transfer(origin, disc_);
+  state.step = before.step;
+  state.time = before.time;
+  for (int level : {0, 1}) {
+    state.x[level] = transfer.unknowns(before.x[level]);
+    state.d[level] = transfer.displacements(before.d[level]);
+  }
+  report_.new_nodes = std::max(report_.new_nodes, transfer.extended());
+}
+
+template <int dim>
+void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, const State& before,
+                                   State& state) {
+  const auto scope = timer_.measure("map");
+  state = before;
+  const double ratio = before.last_step > 0 ? dt / before.last_step : 1.0;
+  const auto alpha = bdf_coefficients(settings_.scheme, before.step + 1, ratio);
+  auto& map = disc_.map;
+  map.displacement = extend(*extension_, placement);
+  map.velocity.resize(map.displacement.size());
+  const auto length = static_cast<Eigen::Index>(map.displacement.size()) * dim;
+  const auto level_before = [&](int level) -> Eigen::VectorXd {
+    return before.map[level].size() > 0 ? before.map[level] : Eigen::VectorXd::Zero(length);
+  };
+  const Eigen::VectorXd last = level_before(0), older = level_before(1);
+  state.map[1] = last;
+  state.map[0].resize(length);
+  for (std::size_t node = 0; node < map.displacement.size(); ++node) {
+    const auto at = static_cast<Eigen::Index>(node) * dim;
+    state.map[0].template segment<dim>(at) = map.displacement[node];
+    map.velocity[node] = (alpha[0] * map.displacement[node] + alpha[1] * last.template segment<dim>(at) +
+                          alpha[2] * older.template segment<dim>(at)) /
+                         dt;
+  }
+  const double ratio_of_volumes = smallest_volume_ratio(disc_);
+  report_.smallest_volume_ratio = std::min(report_.smallest_volume_ratio, ratio_of_volumes);
+  if (ratio_of_volumes <= 0)
+    throw NumericsError("the map of the fluid's domain folds",
+                        "smallest volume ratio " + std::to_string(ratio_of_volumes),
+                        "coupling = \"explicit\", which cuts anew, or less stroke");
+}
+
+template <int dim>
 void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
   const State before = state;
   const auto solids = disc_.solid_unknowns();
@@ -68,20 +127,10 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
   double error = 0;
   for (int turn = 1; turn <= turns; ++turn) {
     check_walls(placement, "a solid would be placed beyond a wall");
-    {
-      const auto scope = timer_.measure("cut");
-      auto next = recut(disc_, placement, cut_options_);
-      if (turn == 1) origin = std::move(disc_);
-      disc_ = std::move(next);
-      const FieldTransfer<dim> transfer(origin, disc_);
-      for (int level : {0, 1}) {
-        state.x[level] = transfer.unknowns(before.x[level]);
-        state.d[level] = transfer.displacements(before.d[level]);
-      }
-      state.step = before.step;
-      state.time = before.time;
-      report_.new_nodes = std::max(report_.new_nodes, transfer.extended());
-    }
+    if (coupling_ == Coupling::mapped)
+      place_map(placement, dt, before, state);
+    else
+      place_cut(placement, before, origin, state);
     operators_ = build_operators(disc_, operators_.comm, timer_);
     std::optional<ContactForce> contact;
     if (contact_) {

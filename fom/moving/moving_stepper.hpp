@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "fom/mapping/domain_extension.hpp"
 #include "fom/moving/field_transfer.hpp"
 #include "fom/time_stepper.hpp"
 
@@ -15,11 +16,12 @@ namespace undula {
 
 /// What moved in one step.
 struct MotionReport {
-  int parts = 1;              ///< steps that the regular step was divided into
-  int iterations = 1;         ///< turns of placing and solving, the most of all parts
-  int new_nodes = 0;          ///< fluid nodes that took their history from the extension
-  int contact_nodes = 0;      ///< nodes of the skin in the film of contact
-  double placement_error = 0; ///< cm, largest difference between placed and computed displacement
+  int parts = 1;                    ///< steps that the regular step was divided into
+  int iterations = 1;               ///< turns of placing and solving, the most of all parts
+  int new_nodes = 0;                ///< fluid nodes that took their history from the extension
+  int contact_nodes = 0;            ///< nodes of the skin in the film of contact
+  double smallest_volume_ratio = 1; ///< of J of the domain's map
+  double placement_error = 0;       ///< cm, largest difference between placed and computed displacement
 };
 
 template <int dim>
@@ -43,6 +45,9 @@ public:
 private:
   void advance_part(double t, double dt, State& state);
   Eigen::VectorXd extrapolated_placement(const State& state, double t, double dt) const;
+  void place_cut(const Eigen::VectorXd& placement, const State& before, Discretisation<dim>& origin,
+                 State& state);
+  void place_map(const Eigen::VectorXd& placement, double dt, const State& before, State& state);
   void restore(const State& state);
   void check_walls(const Eigen::VectorXd& displacement, const char* what) const;
 
@@ -53,6 +58,7 @@ private:
   double dt_;
   PhaseTimer& timer_;
   std::optional<WallContact<dim>> contact_;
+  std::optional<DomainExtension<dim>> extension_; ///< mapped
   CutOptions cut_options_;
   std::optional<TimeStepper<dim>> stepper_;
   MotionReport report_;

@@ -119,6 +119,15 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(PCSetType(preconditioner, PCLU), "choosing LU");
   check_petsc(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS), "choosing MUMPS");
   check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
+  if (disc.interface_moves) {
+    // The pattern serves one step, so finding the order counts as much as the factors: approximate minimum
+    // degree takes less than half the time of nested dissection at such sizes, with about the same fill.
+    constexpr PetscInt ordering_option = 7, minimum_degree = 0;
+    Mat factors = nullptr;
+    check_petsc(PCFactorSetUpMatSolverType(preconditioner), "preparing MUMPS");
+    check_petsc(PCFactorGetMatrix(preconditioner, &factors), "preparing MUMPS");
+    check_petsc(MatMumpsSetIcntl(factors, ordering_option, minimum_degree), "choosing the ordering");
+  }
   check_petsc(KSPSetFromOptions(solver_.get()), "reading -fsi_ options");
 }
 
