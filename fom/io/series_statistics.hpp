@@ -21,10 +21,10 @@ struct ColumnStatistics {
   int oscillations = 0; ///< full ones in the window
 };
 
-/// Of every column but "time_s", over the rows from time `from` (s) on, or all if the table ends before it. Oscillations run from one upward
-/// crossing of the window's mean to the next; wiggles of less than a tenth of the amplitude about the mean do
-/// not count as crossings, and a column that changes by less than 1e-9 of its size does not oscillate. Throws
-/// InputError for a table without "time_s".
+/// Of every column but "time_s", over the rows from time `from` (s) on, or all if the table ends before it.
+/// Oscillations run from one upward crossing of the window's mean to the next; wiggles of less than a tenth
+/// of the amplitude about the mean do not count as crossings, and a column that changes by less than 1e-9 of
+/// its size does not oscillate. Throws InputError for a table without "time_s".
 std::vector<ColumnStatistics> series_statistics(const TimeSeries& table, double from);
 
 /// "column,last,mean,amplitude,frequency_Hz,oscillations", written in one step.

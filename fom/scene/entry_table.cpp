@@ -40,8 +40,10 @@ void add_shape_keys(std::vector<SceneKey>& keys, Entry entry) {
                   PositionListKey{FIELD(shape.outline), cm_per_mm}});
   keys.push_back(
       {"centre_mm", "mm", "centre of a circle", shapes_state, PositionKey{FIELD(shape.centre), cm_per_mm}});
-  keys.push_back({"radius_mm", "mm", "radius of a circle, in place of `outline_mm`; about a point of the axis of axisymmetric space, of a sphere", shapes_state,
-                  RealKey{FIELD(shape.radius), cm_per_mm, from_to(0, 1e6), 0.0}});
+  keys.push_back({"radius_mm", "mm",
+                  "radius of a circle, in place of `outline_mm`; about a point of the axis of axisymmetric "
+                  "space, of a sphere",
+                  shapes_state, RealKey{FIELD(shape.radius), cm_per_mm, from_to(0, 1e6), 0.0}});
 }
 
 template <typename Entry>
