@@ -151,6 +151,53 @@ ContactForce contact_force(const WallContact<dim>& contact, const Discretisation
   return force;
 }
 
+template <int dim>
+void keep_off_walls(const WallContact<dim>& contact, const Eigen::VectorXd& now, Eigen::VectorXd& placement) {
+  for (const auto& node : contact.skin) {
+    auto placed = placement.template segment<dim>(node.unknown);
+    const Point<dim> here = now.template segment<dim>(node.unknown);
+    const double gap = gap_to_walls<dim>(contact, node.at_rest + placed).distance;
+    if (gap >= 0.5 * contact.settings.film) continue;
+    const double left = gap_to_walls<dim>(contact, node.at_rest + here).distance,
+                 least = 0.5 * std::min(left, contact.settings.film);
+    if (gap >= least || gap >= left) continue;
+    placed = here + (left - least) / (left - gap) * (placed - here);
+  }
+}
+
+template <int dim>
+ContactBalance contact_balance(const WallContact<dim>& contact, const Eigen::VectorXd& linearised,
+                               const Eigen::VectorXd& displacement) {
+  ContactBalance balance;
+  balance.smallest_gap = std::numeric_limits<double>::infinity();
+  balance.linearised = displacement;
+  const auto areas = node_areas(contact, displacement);
+  double exact = 0, difference = 0;
+  for (std::size_t k = 0; k < contact.skin.size(); ++k) {
+    const auto& node = contact.skin[k];
+    const Point<dim> before = linearised.template segment<dim>(node.unknown),
+                     after = displacement.template segment<dim>(node.unknown);
+    const auto old_gap = gap_to_walls<dim>(contact, node.at_rest + before),
+               new_gap = gap_to_walls<dim>(contact, node.at_rest + after);
+    balance.smallest_gap = std::min(balance.smallest_gap, new_gap.distance);
+    const auto at = film_pressure(contact.settings, old_gap.distance);
+    const double expected = at.pressure + at.slope * old_gap.direction.dot(after - before),
+                 film = film_pressure(contact.settings, new_gap.distance).pressure,
+                 area = std::abs(areas[k].dot(new_gap.direction));
+    exact += area * film;
+    difference += area * std::abs(film - expected);
+    const double least = 0.3 * std::min(old_gap.distance, contact.settings.film);
+    if (new_gap.distance < least)
+      balance.linearised.template segment<dim>(node.unknown) =
+          before + (old_gap.distance - least) / (old_gap.distance - new_gap.distance) * (after - before);
+  }
+  balance.error = difference > 0 ? difference / std::max(exact, std::numeric_limits<double>::min()) : 0;
+  return balance;
+}
+
+template void keep_off_walls(const WallContact<2>&, const Eigen::VectorXd&, Eigen::VectorXd&);
+template ContactBalance contact_balance(const WallContact<2>&, const Eigen::VectorXd&,
+                                        const Eigen::VectorXd&);
 template WallContact<2> prepare_contact(const Discretisation<2>&, const ContactSettings&);
 template Gap<2> gap_to_walls(const WallContact<2>&, const Point<2>&);
 template double smallest_gap(const WallContact<2>&, const Eigen::VectorXd&);

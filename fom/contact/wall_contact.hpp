@@ -71,4 +71,20 @@ template <int dim>
 ContactForce contact_force(const WallContact<dim>& contact, const Discretisation<dim>& disc,
                            const Eigen::VectorXd& placement);
 
+/// Draws back, towards where they are `now`, those nodes of an expected `placement` (both solids' unknowns)
+/// that would lose more than half of what is left of their film.
+template <int dim>
+void keep_off_walls(const WallContact<dim>& contact, const Eigen::VectorXd& now, Eigen::VectorXd& placement);
+
+/// How well a force that was linearised about `linearised` holds for the displacement it led to, and where to
+/// linearise next: Newton's method for the barrier, kept from falling by more than 70 % of a gap at once.
+struct ContactBalance {
+  double error = 0;           ///< |exact - linearised| force over the exact, summed over the nodes
+  double smallest_gap = 0;    ///< cm, infinite without nodes
+  Eigen::VectorXd linearised; ///< solids' unknowns
+};
+template <int dim>
+ContactBalance contact_balance(const WallContact<dim>& contact, const Eigen::VectorXd& linearised,
+                               const Eigen::VectorXd& displacement);
+
 } // namespace undula

@@ -60,12 +60,41 @@ Eigen::VectorXd MovingStepper<dim>::extrapolated_placement(const State& state, d
 }
 
 template <int dim>
-void MovingStepper<dim>::check_walls(const Eigen::VectorXd& displacement, const char* what) const {
-  if (!contact_) return;
-  const double gap = smallest_gap(*contact_, displacement);
-  if (gap > 0) return;
-  throw NumericsError(what, "smallest gap " + std::to_string(gap) + " cm",
-                      "a smaller time step, or a stiffer or thicker film (section [contact])");
+void MovingStepper<dim>::solve_placed(const Eigen::VectorXd& placement, double t, double dt, State& state) {
+  operators_ = build_operators(disc_, operators_.comm, timer_);
+  // A map leaves the pattern as it is: only the numbers are new.
+  if (coupling_ == Coupling::mapped && stepper_ && stepper_->dt() == dt)
+    stepper_->system().refresh();
+  else
+    stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton);
+  if (!contact_) {
+    stepper_->advance_to(t, state);
+    return;
+  }
+  // Newton's method for the film, about ever better places of the skin.
+  constexpr int most = 12;
+  constexpr double accuracy = 0.02;
+  const State placed = state;
+  const SparseMatrix elastic = operators_.stiffness;
+  ContactBalance balance;
+  balance.linearised = placement;
+  for (int iteration = 1; iteration <= most; ++iteration) {
+    auto film = contact_force(*contact_, disc_, balance.linearised);
+    report_.contact_nodes = std::max(report_.contact_nodes, film.nodes);
+    report_.contact_iterations = std::max(report_.contact_iterations, iteration);
+    if (operators_.rank == 0) operators_.stiffness = elastic + film.stiffness;
+    stepper_->system().refresh();
+    stepper_->set_contact(std::move(film));
+    state = placed;
+    stepper_->advance_to(t, state);
+    balance = contact_balance(*contact_, balance.linearised, state.d[0].tail(disc_.solid_unknowns()));
+    if (balance.error <= accuracy && balance.smallest_gap > 0) return;
+  }
+  throw NumericsError(
+      balance.smallest_gap > 0 ? "the film of contact did not find its balance" : "a solid would pass a wall",
+      "t = " + std::to_string(t) + " s, smallest gap " + std::to_string(balance.smallest_gap) +
+          " cm, relative error " + std::to_string(balance.error),
+      "a smaller time step, or a stiffer or thicker film (section [contact])");
 }
 
 template <int dim>
@@ -123,29 +152,15 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
   const auto solids = disc_.solid_unknowns();
   Discretisation<dim> origin; // cut and numbering of `before`
   Eigen::VectorXd placement = extrapolated_placement(state, t, dt);
+  if (contact_) keep_off_walls<dim>(*contact_, before.d[0].tail(solids), placement);
   const int turns = coupling_ == Coupling::implicit ? settings_.motion.max_iterations : 1;
   double error = 0;
   for (int turn = 1; turn <= turns; ++turn) {
-    check_walls(placement, "a solid would be placed beyond a wall");
     if (coupling_ == Coupling::mapped)
       place_map(placement, dt, before, state);
     else
       place_cut(placement, before, origin, state);
-    operators_ = build_operators(disc_, operators_.comm, timer_);
-    std::optional<ContactForce> contact;
-    if (contact_) {
-      contact = contact_force(*contact_, disc_, placement);
-      report_.contact_nodes = std::max(report_.contact_nodes, contact->nodes);
-      if (operators_.rank == 0) operators_.stiffness += contact->stiffness;
-    }
-    // A map leaves the pattern as it is: only the numbers are new.
-    if (coupling_ == Coupling::mapped && stepper_ && stepper_->dt() == dt)
-      stepper_->system().refresh();
-    else
-      stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton);
-    if (contact) stepper_->set_contact(std::move(*contact));
-    stepper_->advance_to(t, state);
-    check_walls(state.d[0].tail(solids), "a solid has passed a wall");
+    solve_placed(placement, t, dt, state);
     state.last_step = dt;
     state.placement = placement;
     error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();

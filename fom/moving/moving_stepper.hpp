@@ -20,6 +20,7 @@ struct MotionReport {
   int iterations = 1;               ///< turns of placing and solving, the most of all parts
   int new_nodes = 0;                ///< fluid nodes that took their history from the extension
   int contact_nodes = 0;            ///< nodes of the skin in the film of contact
+  int contact_iterations = 0;       ///< linearisations of the film, the most of all parts
   double smallest_volume_ratio = 1; ///< of J of the domain's map
   double placement_error = 0;       ///< cm, largest difference between placed and computed displacement
 };
@@ -49,7 +50,7 @@ private:
                  State& state);
   void place_map(const Eigen::VectorXd& placement, double dt, const State& before, State& state);
   void restore(const State& state);
-  void check_walls(const Eigen::VectorXd& displacement, const char* what) const;
+  void solve_placed(const Eigen::VectorXd& placement, double t, double dt, State& state);
 
   Discretisation<dim>& disc_;
   Operators<dim>& operators_;
