@@ -57,6 +57,7 @@ struct FsiProblem {
   std::map<std::string, BoundaryCondition<dim>> boundary; ///< by name; every boundary name needs one
   VectorField<dim> body_force;                            ///< dyn/cm^3 on the fluid, empty: zero
   StabilisationWeights stabilisation;
+  double slip_length = 0;    ///< cm, of Navier's slip law on the skins of the solids; 0: no slip
   bool pin_pressure = false; ///< enclosed flow: fix the constant of the pressure at one node
 };
 

@@ -59,6 +59,7 @@ FsiProblem<2> pump_problem(const Scene& scene) {
   problem.flow = scene.flow;
   problem.fluid = scene.fluid;
   problem.stabilisation = scene.stabilisation;
+  problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
   problem.background = std::move(meshes.background);
 
   using Condition = BoundaryCondition<2>;

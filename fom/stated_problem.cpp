@@ -294,6 +294,7 @@ FsiProblem<2> stated_problem(const Scene& scene) {
   problem.flow = scene.flow;
   problem.fluid = scene.fluid;
   problem.stabilisation = scene.stabilisation;
+  problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
   problem.body_force = functions.vector(statement.body_force, 1, scene.file.string() + ", section [domain]");
   const bool axisymmetric = scene.space == Space::axisymmetric;
   problem.background = domain_mesh(statement, axisymmetric);

@@ -53,6 +53,11 @@ void add_fluid_stabilisation(const Discretisation<dim>& disc, const Share& share
 /// Nitsche coupling with the fluid-sided stress, w the solid's test function, v_s its velocity:
 /// -(sigma(u,p) n, v - w) - (2 mu eps(v) n, u - v_s) - (q n, u - v_s) into `consistent`, and
 /// + (gamma_v mu / h (u - v_s), v - w) + (gamma_n phi / h (u - v_s).n, (v - w).n) into `penalty`.
+/// With a slip length L the tangential part is that of Nitsche's method for Robin conditions (Juntunen &
+/// Stenberg, Math. Comp. 78, 2009; Winter, Schott, Massing & Wall, CMAME 330, 2018, for cut elements and
+/// Navier's law): with k = h / gamma_v the tangential terms above are multiplied by k / (k + L), and
+/// -(L k / (k + L) / mu (2 mu eps(u) n)_t, (2 mu eps(v) n)_t) is added to `consistent`. It is consistent with
+/// (sigma n)_t = -mu / L (u - v_s)_t and as stable for any L as for L = 0.
 template <int dim>
 void add_interface(const Discretisation<dim>& disc, const Share& share,
                    std::span<const PartGeometry<dim>> geometries, Triplets& consistent, Triplets& penalty);

@@ -30,9 +30,15 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
     const double h = cell_diameter(disc.cut.mesh, disc.cut.parts[piece.part].cell) * thinning;
     const double viscous_penalty = weights.nitsche_viscous * mu / h;
     const double normal_penalty = weights.nitsche_normal * phi_weight(weights, disc.problem.fluid, h) / h;
+    // The penalty acts as one more slip length, in series with the wall's own: `held` is the part of the
+    // tangential jump that Nitsche's terms hold, exactly 1 without slip and 0 on a skin without friction.
+    const double penalty_length = h / weights.nitsche_viscous;
+    const double held = penalty_length / (penalty_length + disc.problem.slip_length);
+    const double released = disc.problem.slip_length / (penalty_length + disc.problem.slip_length);
 
     // By basis function: its viscous traction 2 mu eps n, and the pressure and jump u - v_s it carries.
     PerComponent traction = PerComponent::Zero(), jump = PerComponent::Zero();
+    PerComponent held_jump; // normal component and held part of the tangential one
     Eigen::Matrix<double, size, 1> pressure = Eigen::Matrix<double, size, 1>::Zero();
     for (int i = 0; i <= dim; ++i) {
       for (int c = 0; c < dim; ++c) {
@@ -48,6 +54,7 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
         unknowns[fluid_size + k * dim + c] = disc.solid_unknown(piece.solid, solid_nodes[k], c);
 
     Local coupling = Local::Zero(), penalties = Local::Zero();
+    double area = 0;
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
       const auto& place = disc.cut.interface_quadrature.points[q];
       const auto lambda = geometry.barycentric(place);
@@ -60,12 +67,18 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
       }
       for (std::size_t k = 0; k < solid_nodes.size(); ++k)
         for (int c = 0; c < dim; ++c) jump(fluid_size + k * dim + c, c) = -shape[k];
-      // -(sigma(trial) n) . jump(test) - (2 mu eps(test) n + q n) . jump(trial)
-      coupling.noalias() -= (w * jump) * (traction - pressure * n.transpose()).transpose();
-      coupling.noalias() -= (w * (traction + pressure * n.transpose())) * jump.transpose();
       const Eigen::Matrix<double, size, 1> normal_jump = jump * n;
-      penalties.noalias() += (w * viscous_penalty * jump) * jump.transpose();
+      held_jump = held * jump + released * normal_jump * n.transpose();
+      // -(sigma(trial) n) . jump(test) - (2 mu eps(test) n + q n) . jump(trial)
+      coupling.noalias() -= (w * held_jump) * (traction - pressure * n.transpose()).transpose();
+      coupling.noalias() -= (w * (traction + pressure * n.transpose())) * held_jump.transpose();
+      penalties.noalias() += (w * viscous_penalty * held_jump) * jump.transpose();
       penalties.noalias() += (w * normal_penalty * normal_jump) * normal_jump.transpose();
+      area += w;
+    }
+    if (released > 0) {
+      const PerComponent friction = traction - (traction * n) * n.transpose();
+      coupling.noalias() -= (area * released / viscous_penalty * friction) * friction.transpose();
     }
     const auto has_jump = [](int at) { return at >= fluid_size || at % (dim + 1) < dim; };
     for (int a = 0; a < size; ++a)

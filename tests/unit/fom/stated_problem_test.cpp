@@ -115,6 +115,12 @@ TEST(StatedProblem, BodiesAreHeldWhereTheySay) {
   EXPECT_NEAR(block.initial_velocity({2.1, 0.5}, 0)[1], 5, 1e-14);
 }
 
+TEST(StatedProblem, SlipsByTheLengthOfTheScene) {
+  EXPECT_EQ(scene_problem(channel()).slip_length, 0);
+  const auto slip = channel({"model.interface=\"slip\"", "contact.slip_length_mm=0.3"});
+  EXPECT_NEAR(scene_problem(slip).slip_length, 0.03, 1e-17);
+}
+
 TEST(StatedProblem, TimeIsStatedInSeconds) {
   EXPECT_EQ(time_step(channel()), 0.01);
   EXPECT_EQ(last_step(channel()), 11);
