@@ -48,13 +48,14 @@ State state_of(const Checkpoint& checkpoint, const State& like, const std::files
     state.d[level] = array(d_names[level]);
     state.map[level] = array(map_names[level]);
     // A cut of its own has unknowns of its own.
-    const auto expected =
-        state.placement.size() > 0 && state.map[level].size() == 0 ? state.x[0].size() : like.x[level].size();
-    for (const auto* names : {&x_names, &d_names}) {
-      const auto size = (names == &x_names ? state.x : state.d)[level].size();
-      if (size != expected || size == 0)
-        refuse((*names)[level], static_cast<std::size_t>(size), std::to_string(expected) + " values");
-    }
+    const bool own_cut = state.placement.size() > 0 && state.map[0].size() == 0;
+    const auto check = [&](const char* name, const Eigen::VectorXd& values, Eigen::Index at_rest) {
+      const Eigen::Index expected = own_cut ? state.x[0].size() : at_rest;
+      if (values.size() != expected || values.size() == 0)
+        refuse(name, static_cast<std::size_t>(values.size()), std::to_string(expected) + " values");
+    };
+    check(x_names[level], state.x[level], like.x[level].size());
+    check(d_names[level], state.d[level], like.d[level].size());
   }
   return state;
 }
