@@ -145,7 +145,7 @@ TEST(BadInput, OverridesAreCheckedByTheSameTable) {
       {"operating_point.frequency_Hz=0", "out of range"},
       {"operating_point.frequency_Hz=fast", "wrong type"},
       {"membrane.poison=0.3", "\"membrane.poisson\""},
-      {"model.coupling=explicit", "does not offer yet"},
+      {"model.space=3d", "does not offer yet"},
       {"operating_point.head_mmHg", "key=value"},
       {"operating_point.head_mmHg=", "key=value"},
       {"time.periods=3\nname = \"x\"", "wrong type"}};

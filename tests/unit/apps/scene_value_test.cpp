@@ -108,6 +108,7 @@ TEST(SceneTolerance, TheyReadBackBitForBitAndDoNotChangeTheHash) {
 TEST(SceneTolerance, EveryRealKeyTakesOneAndNoOtherKeyDoes) {
   for (const SceneKey& key : scene_table()) {
     Scene scene = with({});
+    if (!key.applies_to(scene)) continue; // refused before its value is read
     if (const auto* real = std::get_if<RealKey>(&key.value)) {
       const double middle = real->field(scene) / real->cgs_per_unit;
       const auto stated = [&](double tolerance) {
@@ -171,6 +172,7 @@ TEST(SceneValue, SetsWhatAnOverrideSets) {
 TEST(SceneValue, EveryRealKeyReadsBackWhatWasSet) {
   const Scene scene = with({});
   for (const SceneKey& key : scene_table()) {
+    if (!key.applies_to(scene)) continue; // what a scene has not, has no value
     if (!std::holds_alternative<RealKey>(key.value)) {
       EXPECT_THROW(surface_value(scene, key.path), InputError) << key.path;
       EXPECT_THROW(with_value(scene, key.path, 1), InputError) << key.path;
