@@ -26,7 +26,7 @@ Eigen::VectorXd loads_at(const Discretisation<dim>& disc, const Operators<dim>& 
   return load;
 }
 
-/// This rank's share of convection(b) x; nothing in Stokes flow.
+/// This rank's share of convection(b) x; nothing where has_convection says so.
 template <int dim>
 Eigen::VectorXd convection_of(const Discretisation<dim>& disc, const Operators<dim>& operators,
                               const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
