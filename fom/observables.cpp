@@ -6,6 +6,7 @@
 #include <set>
 
 #include "fom/pump_problem.hpp"
+#include "geometry/innermost_cell.hpp"
 
 namespace undula {
 
@@ -100,17 +101,9 @@ MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count) {
     const double r = low + (high - low) * (1e-6 + (1 - 2e-6) * k / (count - 1.0));
     const auto [bottom, top] = extent_at(mesh, r);
     const Point<dim> x(r, 0.5 * (bottom + top));
-    int best = 0;
-    double best_inside = -std::numeric_limits<double>::infinity();
-    for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
-      const double smallest = barycentric_coordinates(mesh, static_cast<int>(cell), x).minCoeff();
-      if (smallest > best_inside) {
-        best_inside = smallest;
-        best = static_cast<int>(cell);
-      }
-    }
-    const auto shape = quadratic_values<dim>(barycentric_coordinates(mesh, best, x));
-    const auto& nodes = disc.solid_spaces[0].cell_nodes[best];
+    const int cell = innermost_cell(mesh, x);
+    const auto shape = quadratic_values<dim>(barycentric_coordinates(mesh, cell, x));
+    const auto& nodes = disc.solid_spaces[0].cell_nodes[cell];
     for (std::size_t i = 0; i < nodes.size(); ++i)
       entries.emplace_back(k, disc.solid_unknown(0, nodes[i], dim - 1) - disc.fluid_unknowns(), shape[i]);
     probes.radius.push_back(r);

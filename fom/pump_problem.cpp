@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "fom/scene_problem.hpp"
 #include "geometry/gmsh_import.hpp"
 #include "geometry/profile_scale.hpp"
 #include "geometry/pump.hpp"
@@ -54,12 +55,7 @@ PumpMeshes pump_meshes(const Scene& scene) {
 
 FsiProblem<2> pump_problem(const Scene& scene) {
   auto meshes = pump_meshes(scene);
-  FsiProblem<2> problem;
-  problem.space = scene.space;
-  problem.flow = scene.flow;
-  problem.fluid = scene.fluid;
-  problem.stabilisation = scene.stabilisation;
-  problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
+  auto problem = problem_without_meshes(scene);
   problem.background = std::move(meshes.background);
 
   using Condition = BoundaryCondition<2>;

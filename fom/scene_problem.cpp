@@ -19,6 +19,16 @@ void require_pump(const Scene& scene, const std::string& command) {
                    scene.file.string());
 }
 
+FsiProblem<2> problem_without_meshes(const Scene& scene) {
+  FsiProblem<2> problem;
+  problem.space = scene.space;
+  problem.flow = scene.flow;
+  problem.fluid = scene.fluid;
+  problem.stabilisation = scene.stabilisation;
+  problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
+  return problem;
+}
+
 double time_step(const Scene& scene) {
   if (scene.problem.stated) return scene.time.step;
   return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);

@@ -12,6 +12,9 @@ namespace undula {
 /// (stated_problem). Throws InputError for what is wrong with them.
 FsiProblem<2> scene_problem(const Scene& scene);
 
+/// What every scene says alike of its problem: space, flow, fluid, interface and stabilisation.
+FsiProblem<2> problem_without_meshes(const Scene& scene);
+
 /// Time step, s: one period / steps_per_period, or the one a stated scene names.
 double time_step(const Scene& scene);
 

@@ -10,6 +10,7 @@
 #include "fom/io/text_file.hpp"
 #include "fom/reaction.hpp"
 #include "fom/scene/expression.hpp"
+#include "geometry/innermost_cell.hpp"
 #include "geometry/part_lookup.hpp"
 
 namespace undula {
@@ -38,24 +39,17 @@ std::optional<Eigen::Vector3d> fluid_at(const Discretisation<2>& disc, const Poi
 SolidPoint solid_point(const Discretisation<2>& disc, int solid, const Point<2>& x,
                        const std::string& where) {
   const auto& mesh = disc.problem.solids[solid].mesh;
-  int best = -1;
-  double best_inside = -std::numeric_limits<double>::infinity();
-  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
-    const double smallest = barycentric_coordinates(mesh, static_cast<int>(cell), x).minCoeff();
-    if (smallest > best_inside) {
-      best_inside = smallest;
-      best = static_cast<int>(cell);
-    }
-  }
+  const int cell = innermost_cell(mesh, x);
+  const auto lambda = barycentric_coordinates(mesh, cell, x);
   // Round bodies are polygons: a point on the circle is a little outside.
   constexpr double outside = 0.05;
-  if (best_inside < -outside)
+  if (lambda.minCoeff() < -outside)
     throw InputError("a point is outside of its body",
                      "(" + exact_number(units::length_to_mm(x[0])) + ", " +
                          exact_number(units::length_to_mm(x[1])) + ") mm",
                      "a point of body \"" + disc.problem.solids[solid].name + "\" at rest", where);
-  const auto shape = quadratic_values<2>(barycentric_coordinates(mesh, best, x));
-  const auto& nodes = disc.solid_spaces[solid].cell_nodes[best];
+  const auto shape = quadratic_values<2>(lambda);
+  const auto& nodes = disc.solid_spaces[solid].cell_nodes[cell];
   SolidPoint point;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     point.unknowns.push_back(disc.solid_unknown(solid, nodes[i], 0) - disc.fluid_unknowns());

@@ -8,6 +8,7 @@
 #include "base/units.hpp"
 #include "fom/io/text_file.hpp"
 #include "fom/scene/expression.hpp"
+#include "fom/scene_problem.hpp"
 #include "geometry/polygon_mesh.hpp"
 
 namespace undula {
@@ -289,12 +290,7 @@ SolidBody<2> body_of(const std::string& name, const BodyStatement& statement, bo
 FsiProblem<2> stated_problem(const Scene& scene) {
   const ProblemStatement& statement = scene.problem;
   const Functions functions(scene);
-  FsiProblem<2> problem;
-  problem.space = scene.space;
-  problem.flow = scene.flow;
-  problem.fluid = scene.fluid;
-  problem.stabilisation = scene.stabilisation;
-  problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
+  auto problem = problem_without_meshes(scene);
   problem.body_force = functions.vector(statement.body_force, 1, scene.file.string() + ", section [domain]");
   const bool axisymmetric = scene.space == Space::axisymmetric;
   problem.background = domain_mesh(statement, axisymmetric);

@@ -37,6 +37,16 @@ Eigen::VectorXd convection_of(const Discretisation<dim>& disc, const Operators<d
   return convection;
 }
 
+/// This rank's share of the penalty on velocity jumps that the local velocity scales, times x.
+template <int dim>
+Eigen::VectorXd jumps_of(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                         const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
+  Eigen::VectorXd jumps = Eigen::VectorXd::Zero(x.size());
+  visit_velocity_jumps<dim>(disc, operators.velocity_jumps, b,
+                            [&](int row, int column, double value) { jumps[row] += value * x[column]; });
+  return jumps;
+}
+
 template <int dim>
 double imposed_fluid_value(const ConstrainedUnknown<dim>& constrained, double t) {
   if (!constrained.condition || !constrained.condition->velocity) return 0.0;
@@ -165,7 +175,8 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
   const Eigen::VectorXd rate = (alpha_[0] * x + alpha_[1] * state.x[1] + alpha_[2] * older_x_) / dt_;
   Eigen::VectorXd sum = operators_.mass * rate + operators_.physical * x + operators_.stabilisation * x +
                         operators_.damping * x + operators_.stiffness * state.d[0] +
-                        convection_of(disc_, operators_, convecting_, x);
+                        convection_of(disc_, operators_, convecting_, x) +
+                        jumps_of(disc_, operators_, convecting_, x);
   sum_over_ranks(operators_.comm, sum);
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
@@ -177,7 +188,9 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
 template <int dim>
 EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   const auto& x = state.x[0];
-  const Eigen::VectorXd physical = operators_.physical * x, penalties = operators_.stabilisation * x,
+  const Eigen::VectorXd physical = operators_.physical * x,
+                        penalties =
+                            operators_.stabilisation * x + jumps_of(disc_, operators_, convecting_, x),
                         damping = operators_.damping * x, elastic = operators_.stiffness * state.d[0];
   const Eigen::VectorXd convection = convection_of(disc_, operators_, convecting_, x);
   const Eigen::VectorXd reaction = residual(state);
@@ -294,7 +307,7 @@ template <int dim>
 Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators<dim>& operators,
                                 const Eigen::VectorXd& x) {
   Eigen::VectorXd sum = operators.physical * x + operators.stabilisation * x + operators.stiffness * x +
-                        convection_of(disc, operators, x, x);
+                        convection_of(disc, operators, x, x) + jumps_of(disc, operators, x, x);
   sum_over_ranks(operators.comm, sum);
   if (operators.has_nonlinear_solid)
     sum += complete_response<dim>(disc, operators, x, Eigen::VectorXd::Zero(x.size()), {}, false).elastic;

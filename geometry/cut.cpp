@@ -1,5 +1,6 @@
 #include "geometry/cut.hpp"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -432,6 +433,17 @@ private:
     return whole ? nullptr : &near_[near_index_[cell]].traces[local];
   }
 
+  /// Adds `measure` to what two parts share of a facet, whose connections start at `begin`.
+  void add_connection(std::size_t begin, int facet, std::array<int, 2> parts, double measure) {
+    for (std::size_t c = begin; c < cut_.connections.size(); ++c) {
+      auto& known = cut_.connections[c];
+      if (known.part[0] != parts[0] || known.part[1] != parts[1]) continue;
+      known.measure += measure;
+      return;
+    }
+    cut_.connections.push_back({facet, {parts[0], parts[1]}, measure});
+  }
+
   void connect(int index) {
     const auto& facet = cut_.facets.facets[index];
     const std::vector<Trace>* sides[2] = {traces(facet.cells[0], facet.local[0]),
@@ -439,13 +451,7 @@ private:
     const int first_part[2] = {cut_.cell_parts[facet.cells[0]], cut_.cell_parts[facet.cells[1]]};
     const std::size_t begin = cut_.connections.size();
     const auto add = [&](int part_0, int part_1, double measure) {
-      for (std::size_t c = begin; c < cut_.connections.size(); ++c) {
-        auto& known = cut_.connections[c];
-        if (known.part[0] != part_0 || known.part[1] != part_1) continue;
-        known.measure += measure;
-        return;
-      }
-      cut_.connections.push_back({index, {part_0, part_1}, measure});
+      add_connection(begin, index, {part_0, part_1}, measure);
     };
     if (!sides[0] && !sides[1]) {
       add(first_part[0], first_part[1], setup_.shapes[index].measure);
@@ -517,13 +523,7 @@ private:
   void connect_stretches(int facet) {
     const std::size_t begin = cut_.connections.size();
     const auto add = [&](int part_0, int part_1, double measure) {
-      for (std::size_t c = begin; c < cut_.connections.size(); ++c) {
-        auto& known = cut_.connections[c];
-        if (known.part[0] != part_0 || known.part[1] != part_1) continue;
-        known.measure += measure;
-        return;
-      }
-      cut_.connections.push_back({facet, {part_0, part_1}, measure});
+      add_connection(begin, facet, {part_0, part_1}, measure);
     };
     const auto& cells = cut_.facets.facets[facet].cells;
     if (near_index_[cells[0]] < 0 && near_index_[cells[1]] < 0) {

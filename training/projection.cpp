@@ -13,6 +13,9 @@ rom::Operators project(const PreparedScene& prepared, const Bases& bases) {
         condition.opening == OpeningCondition::static_pressure)
       throw InputError("the reduced model needs openings whose condition is a polynomial of the velocity",
                        "static-pressure at '" + name + "'", "total-pressure", "section [model] of the scene");
+  if (disc.problem.stabilisation.velocity_scale != VelocityScale::reference)
+    throw InputError("the reduced model needs penalties that do not depend on the flow", "local", "reference",
+                     "stabilisation.velocity_scale");
   rom::Operators reduced;
   reduced.velocity_modes = static_cast<int>(bases.velocity.cols());
   reduced.supremizer_modes = bases.supremizers;

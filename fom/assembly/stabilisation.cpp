@@ -1,6 +1,5 @@
-#include <algorithm>
-
-#include "fom/assembly/forms.hpp"
+#include "fom/assembly/facet_patch.hpp"
+#include "fom/assembly/velocity_jump.hpp"
 
 namespace undula {
 
@@ -8,85 +7,74 @@ double phi_weight(const StabilisationWeights& weights, const FluidProperties& fl
   return fluid.viscosity + fluid.density * (weights.reference_velocity * h + h * h / weights.reference_time);
 }
 
+namespace {
+
+/// Calls f(connection, patch, area with the measure) for the facets of the share.
+template <int dim, class F>
+void for_each_patch(const Discretisation<dim>& disc, const Share& share,
+                    std::span<const PartGeometry<dim>> geometries, F&& f) {
+  const Measure measure = measure_of(disc.problem.space);
+  for (const auto& connection : disc.cut.connections) {
+    const int first = connection.part[0], second = connection.part[1];
+    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[first][0], 0))) continue;
+    const auto patch = facet_patch(disc, connection, geometries[first], geometries[second]);
+    f(connection, patch, patch.area * measure(patch.centre[0])); // r is linear: its mean is at the centre
+  }
+}
+
+} // namespace
+
 template <int dim>
 void add_fluid_stabilisation(const Discretisation<dim>& disc, const Share& share,
                              std::span<const PartGeometry<dim>> geometries, Triplets& out) {
   const auto& w = disc.problem.stabilisation;
   const auto& fluid = disc.problem.fluid;
-  const Measure measure = measure_of(disc.problem.space);
-  for (const auto& connection : disc.cut.connections) {
-    const auto& facet = disc.cut.facets.facets[connection.facet];
-    const auto& first_nodes = disc.fluid_nodes.part_dofs[connection.part[0]];
-    if (!share.has(disc.velocity_unknown(first_nodes[0], 0))) continue;
-
-    // Jump of the gradient as a linear form on the nodes of both parts; connected parts share those of the
-    // facet.
-    std::array<int, 2 * (dim + 1)> nodes;
-    Eigen::Matrix<double, dim, 2 * (dim + 1)> gradient_jump =
-        Eigen::Matrix<double, dim, 2 * (dim + 1)>::Zero();
-    int count = 0;
-    double h = 0, thinning = 0;
-    bool touches_cut = false;
-    for (int side = 0; side < 2; ++side) {
-      const int part = connection.part[side];
-      const int cell = disc.cut.parts[part].cell;
-      const auto& geometry = geometries[part];
-      for (int a = 0; a <= dim; ++a) {
-        const int node = disc.fluid_nodes.part_dofs[part][a];
-        const int at =
-            static_cast<int>(std::find(nodes.begin(), nodes.begin() + count, node) - nodes.begin());
-        if (at == count) nodes[count++] = node;
-        gradient_jump.col(at) += (side == 0 ? 1.0 : -1.0) * geometry.gradients.col(a);
-      }
-      const int local = facet.local[facet.cells[0] == cell ? 0 : 1];
-      h = std::max(h, cell_diameter(disc.cut.mesh, cell));
-      thinning = std::max(
-          thinning, geometry.reference_gradients.col(local).norm() / geometry.gradients.col(local).norm());
-      touches_cut = touches_cut || disc.cut.parts[part].cut;
-    }
-    // The size that counts is the one across the facet: it changes as the heights of the two elements above
-    // it do.
-    h *= thinning;
-    const int cell0 = disc.cut.parts[connection.part[0]].cell;
-    const int local0 = facet.cells[0] == cell0 ? facet.local[0] : facet.local[1];
-    const auto& geometry0 = geometries[connection.part[0]];
-    const Point<dim> normal = geometry0.gradients.col(local0).normalized();
-
-    // The whole facet, also where a solid covers a piece of it: the extension of the polynomial is penalised.
-    Point<dim> centre = Point<dim>::Zero();
-    for (int a = 0; a <= dim; ++a)
-      if (a != local0) centre += geometry0.corners.col(a) / dim;
-    const double simplex = dim * cell_measure(disc.cut.mesh, cell0) * geometry0.volume_ratio *
-                           geometry0.gradients.col(local0).norm();
-    const double area = simplex * measure(centre[0]); // r is linear: its mean is at the centre
-    const double phi = phi_weight(w, fluid, h);
+  const bool everywhere = w.velocity_scale == VelocityScale::reference;
+  // The whole facet, also where a solid covers a piece of it: the extension of the polynomial is penalised.
+  for_each_patch(disc, share, geometries, [&](const auto&, const FacetPatch<dim>& patch, double area) {
+    const double h = patch.size, phi = phi_weight(w, fluid, h);
     const double inertia = fluid.density / w.reference_time;
-    double velocity = w.velocity_jump * fluid.density * w.reference_velocity * h * h;
+    double velocity = everywhere ? w.velocity_jump * fluid.density * w.reference_velocity * h * h : 0.0;
     double pressure = w.pressure_jump * h * h * h / phi;
     const double divergence = w.divergence * phi * h * area;
-    if (touches_cut) {
+    if (patch.cut) {
       velocity += w.ghost_viscous * fluid.viscosity * h + w.ghost_inertial * inertia * h * h * h;
       pressure += w.ghost_pressure * h * h * h / phi;
     }
-    const Eigen::Matrix<double, 2 * (dim + 1), 1> normal_jump = gradient_jump.transpose() * normal;
-    for (int i = 0; i < count; ++i)
-      for (int j = 0; j < count; ++j) {
-        const double normal_product = area * normal_jump[i] * normal_jump[j];
-        out.emplace_back(disc.pressure_unknown(nodes[i]), disc.pressure_unknown(nodes[j]),
+    for (int i = 0; i < dim + 2; ++i)
+      for (int j = 0; j < dim + 2; ++j) {
+        const double normal_product = area * patch.normal_jump[i] * patch.normal_jump[j];
+        out.emplace_back(disc.pressure_unknown(patch.nodes[i]), disc.pressure_unknown(patch.nodes[j]),
                          pressure * normal_product);
         for (int c = 0; c < dim; ++c) {
-          const int row = disc.velocity_unknown(nodes[i], c);
+          const int row = disc.velocity_unknown(patch.nodes[i], c);
           for (int d = 0; d < dim; ++d) {
-            double value = divergence * gradient_jump(c, i) * gradient_jump(d, j);
+            double value = divergence * patch.gradient_jump(c, i) * patch.gradient_jump(d, j);
             if (c == d) value += velocity * normal_product;
-            out.emplace_back(row, disc.velocity_unknown(nodes[j], d), value);
+            out.emplace_back(row, disc.velocity_unknown(patch.nodes[j], d), value);
           }
         }
       }
-  }
+  });
+}
+
+template <int dim>
+std::vector<VelocityJump<dim>> velocity_jumps(const Discretisation<dim>& disc, const Share& share,
+                                              std::span<const PartGeometry<dim>> geometries) {
+  const double weight = disc.problem.stabilisation.velocity_jump * disc.problem.fluid.density;
+  std::vector<VelocityJump<dim>> jumps;
+  jumps.reserve(disc.cut.connections.size());
+  for_each_patch(disc, share, geometries,
+                 [&](const FacetConnection& connection, const FacetPatch<dim>& patch, double area) {
+                   jumps.push_back({patch.nodes, patch.normal_jump, patch.normal, patch.opposite,
+                                    connection.part[0], weight * patch.size * patch.size * area});
+                 });
+  return jumps;
 }
 
 template void add_fluid_stabilisation(const Discretisation<2>&, const Share&,
                                       std::span<const PartGeometry<2>>, Triplets&);
+template std::vector<VelocityJump<2>> velocity_jumps(const Discretisation<2>&, const Share&,
+                                                     std::span<const PartGeometry<2>>);
 
 } // namespace undula

@@ -1,6 +1,7 @@
 #include "fom/moving/field_transfer.hpp"
 
 #include "base/error.hpp"
+#include "fom/assembly/facet_patch.hpp"
 #include "geometry/dof_matching.hpp"
 
 namespace undula {
@@ -45,27 +46,12 @@ FieldTransfer<dim>::FieldTransfer(const Discretisation<dim>& before, const Discr
   };
   for (const auto& connection : now.cut.connections) {
     if (!touches_new(connection.part[0]) && !touches_new(connection.part[1])) continue;
-    std::array<int, 2 * (dim + 1)> patch;
-    Eigen::Matrix<double, 2 * (dim + 1), 1> jump;
-    double h = 0, area = 0;
-    Point<dim> normal = Point<dim>::Zero();
-    for (int side = 0; side < 2; ++side) {
-      const int part = connection.part[side], cell = now.cut.parts[part].cell;
-      const auto& facet = now.cut.facets.facets[connection.facet];
-      const auto g = barycentric_gradients(now.cut.mesh, cell);
-      if (side == 0) {
-        const int local = facet.cells[0] == cell ? facet.local[0] : facet.local[1];
-        normal = g.col(local).normalized();
-        area = dim * cell_measure(now.cut.mesh, cell) * g.col(local).norm();
-      }
-      for (int a = 0; a <= dim; ++a) {
-        patch[side * (dim + 1) + a] = now.fluid_nodes.part_dofs[part][a];
-        jump[side * (dim + 1) + a] = (side == 0 ? 1.0 : -1.0) * g.col(a).dot(normal);
-      }
-      h = std::max(h, cell_diameter(now.cut.mesh, cell));
-    }
-    for (int i = 0; i < 2 * (dim + 1); ++i)
-      for (int j = 0; j < 2 * (dim + 1); ++j) add(patch[i], patch[j], area * h * jump[i] * jump[j]);
+    const auto patch = facet_patch(now, connection, part_geometry(now, connection.part[0]),
+                                   part_geometry(now, connection.part[1]));
+    for (int i = 0; i < dim + 2; ++i)
+      for (int j = 0; j < dim + 2; ++j)
+        add(patch.nodes[i], patch.nodes[j],
+            patch.area * patch.size * patch.normal_jump[i] * patch.normal_jump[j]);
   }
   for (const auto& piece : now.cut.interface) {
     if (!touches_new(piece.part)) continue;

@@ -41,6 +41,12 @@ enum class OpeningCondition {
   traction,        ///< plain traction on both; for verification, blows up on strong inflow
 };
 
+/// Velocity that scales the penalty on jumps of the velocity gradient.
+enum class VelocityScale {
+  reference, ///< StabilisationWeights::reference_velocity, everywhere and always
+  local      ///< of the flow across the facet
+};
+
 /// Wall friction in a thin gap.
 enum class GapFriction {
   poiseuille,  ///< developed laminar profile, 12 viscosity u / height^2
@@ -121,16 +127,17 @@ struct TimeSettings {
 /// Weights of the stabilisation. They do not depend on the solution (the reduced model inherits them
 /// exactly): phi = viscosity + density * reference_velocity * h + density * h^2 / reference_time.
 struct StabilisationWeights {
-  double velocity_jump = 0;  ///< CIP on [grad u], times density * reference_velocity * h^2
+  double velocity_jump = 0;  ///< CIP on [grad u], times density * velocity * h^2
   double pressure_jump = 0;  ///< CIP on [grad p], times h^3 / phi
   double divergence = 0;     ///< CIP on [div u], times phi * h
   double ghost_viscous = 0;  ///< ghost penalty on [grad u] of cut parts, times viscosity * h
   double ghost_inertial = 0; ///< ghost penalty on [grad u] of cut parts, times density * h^3 / reference_time
   double ghost_pressure = 0; ///< ghost penalty on [grad p] of cut parts, times h^3 / phi
-  double nitsche_viscous = 0;    ///< penalty viscosity / h
-  double nitsche_normal = 0;     ///< penalty phi / h on the normal component
-  double reference_velocity = 0; ///< cm/s
-  double reference_time = 0;     ///< s
+  double nitsche_viscous = 0;                              ///< penalty viscosity / h
+  double nitsche_normal = 0;                               ///< penalty phi / h on the normal component
+  double reference_velocity = 0;                           ///< cm/s
+  double reference_time = 0;                               ///< s
+  VelocityScale velocity_scale = VelocityScale::reference; ///< of velocity_jump
 };
 
 /// Radial flow in the gaps above and below the membrane, modelled as an annular plate (Space::thin_gap).

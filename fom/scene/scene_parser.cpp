@@ -326,7 +326,7 @@ private:
               refuse_value(key, "is out of range", seen_text(node), where);
             }
             typed.field(scene) = static_cast<int>(value);
-          } else if constexpr (std::is_same_v<Type, FileListKey>) {
+          } else if constexpr (std::is_same_v<Type, FileListKey> || std::is_same_v<Type, NameListKey>) {
             if (!node.is_array()) {
               wrong_type();
             }
@@ -335,18 +335,11 @@ private:
               if (!entry.is_string()) {
                 wrong_type();
               }
-              typed.field(scene).push_back(existing_file(key, *entry.value<std::string>(), origin, where));
-            }
-          } else if constexpr (std::is_same_v<Type, NameListKey>) {
-            if (!node.is_array()) {
-              wrong_type();
-            }
-            typed.field(scene).clear();
-            for (const toml::node& entry : *node.as_array()) {
-              if (!entry.is_string()) {
-                wrong_type();
-              }
-              typed.field(scene).push_back(*entry.value<std::string>());
+              auto text = *entry.value<std::string>();
+              if constexpr (std::is_same_v<Type, FileListKey>)
+                typed.field(scene).push_back(existing_file(key, text, origin, where));
+              else
+                typed.field(scene).push_back(std::move(text));
             }
           } else if constexpr (std::is_same_v<Type, PositionKey>) {
             typed.field(scene) = position(key, node, typed.cgs_per_unit, where);

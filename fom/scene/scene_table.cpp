@@ -273,6 +273,14 @@ std::vector<SceneKey> stabilisation_keys() {
   return {
       weight("stabilisation.velocity_jump", "jump of the velocity gradient (convection)",
              FIELD(stabilisation.velocity_jump), 0.05),
+      {"stabilisation.velocity_scale", "",
+       "velocity in velocity_jump; `reference`: the same everywhere, as reduced models need it; `local`: "
+       "that "
+       "of the flow across each facet, none along a wall",
+       shapes_state,
+       choice<FIELD(stabilisation.velocity_scale)>(
+           {name("reference", VelocityScale::reference), name("local", VelocityScale::local)}, {},
+           "reference")},
       weight("stabilisation.pressure_jump", "jump of the pressure gradient",
              FIELD(stabilisation.pressure_jump), 0.05),
       weight("stabilisation.divergence", "jump of the divergence", FIELD(stabilisation.divergence), 0.05),

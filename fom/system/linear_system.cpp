@@ -155,13 +155,13 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
   }
   without_tangents_ = constant_;
   if (b && has_convection(disc_)) {
-    if (convection_places_.empty())
-      visit_convection(disc_, operators_, *b, [&](int row, int column, double) {
-        convection_places_.push_back(place_of(row, column));
+    if (flow_places_.empty())
+      visit_flow_dependent(disc_, operators_, *b, [&](int row, int column, double) {
+        flow_places_.push_back(place_of(row, column));
       });
-    auto place = convection_places_.begin();
-    visit_convection(disc_, operators_, *b,
-                     [&](int, int, double value) { without_tangents_[*place++] += value; });
+    auto place = flow_places_.begin();
+    visit_flow_dependent(disc_, operators_, *b,
+                         [&](int, int, double value) { without_tangents_[*place++] += value; });
   }
   write(without_tangents_);
 }

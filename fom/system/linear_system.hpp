@@ -9,7 +9,8 @@
 namespace undula {
 
 /// Factors of the operators in the system matrix
-///   mass * mass + physical + stabilisation + damping * damping + stiffness * stiffness + convection(b).
+///   mass * mass + physical + stabilisation + damping * damping + stiffness * stiffness + convection(b) +
+///   jumps(b).
 struct SystemFactors {
   double mass = 0;
   double stiffness = 0;
@@ -59,10 +60,10 @@ private:
   PhaseTimer& timer_;
   int factor_every_;
   int factored_at_ = -1;
-  std::vector<int> row_begin_, columns_;                ///< pattern of this rank's share, natural numbering
-  std::vector<int> convection_places_, tangent_places_; ///< of visited entries in the pattern, in their order
-  std::vector<double> constant_;                        ///< for the current factors, by place in the pattern
-  std::vector<double> without_tangents_;                ///< with convection
+  std::vector<int> row_begin_, columns_;          ///< pattern of this rank's share, natural numbering
+  std::vector<int> flow_places_, tangent_places_; ///< of visited entries in the pattern, in their order
+  std::vector<double> constant_;                  ///< for the current factors, by place in the pattern
+  std::vector<double> without_tangents_;          ///< with convection and jumps
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_;

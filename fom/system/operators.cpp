@@ -66,6 +66,9 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   const SolidFactor<dim> everywhere = [](const Body&) { return 1.0; };
   add_solid_mass<dim>(disc, share, everywhere, mass);
   add_fluid_stabilisation<dim>(disc, share, geometries, stabilisation);
+  if (disc.problem.flow == FlowModel::navier_stokes &&
+      disc.problem.stabilisation.velocity_scale == VelocityScale::local)
+    operators.velocity_jumps = velocity_jumps<dim>(disc, share, geometries);
   add_interface<dim>(disc, share, geometries, physical, stabilisation);
   add_solid_mass<dim>(
       disc, share, [](const Body& body) { return body.properties.mass_damping; }, damping);

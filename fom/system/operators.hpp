@@ -8,11 +8,13 @@
 
 #include "base/phase_timer.hpp"
 #include "fom/assembly/nonlinear_solid.hpp"
+#include "fom/assembly/velocity_jump.hpp"
 
 namespace undula {
 
 /// With x the unknowns (fluid velocity and pressure, solid velocity) and d the solid displacement,
-///   mass x' + (physical + stabilisation + damping) x + stiffness d + f(d, x) + convection(x) x = loads,
+///   mass x' + (physical + stabilisation + damping) x + stiffness d + f(d, x) + (convection(x) + jumps(x)) x
+///     = loads,
 /// f the internal forces of solids with a nonlinear law (assembly/nonlinear_solid.hpp).
 /// Matrices are this rank's share in natural numbering; functionals are complete on every rank.
 template <int dim>
@@ -22,7 +24,7 @@ struct Operators {
   Ownership ownership;
   SparseMatrix mass;
   SparseMatrix physical;      ///< viscosity, pressure, divergence, consistent interface terms
-  SparseMatrix stabilisation; ///< interior penalty, ghost penalty, Nitsche penalty
+  SparseMatrix stabilisation; ///< interior penalty, ghost penalty, Nitsche penalty, as far as constant
   SparseMatrix damping;       ///< Kelvin-Voigt of linear solids (damping_time * stiffness), Rayleigh of all
   SparseMatrix stiffness;     ///< of linear solids; zeros for the others
   bool has_nonlinear_solid = false;       ///< on any rank
@@ -31,6 +33,7 @@ struct Operators {
   PartMoments<dim> widening;  ///< moments with the weight div w, w the velocity of the map; empty: identity
   std::vector<int> own_parts; ///< parts of the share
   std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part, moved
+  std::vector<VelocityJump<dim>> velocity_jumps;   ///< of the share, where the local velocity scales them
   std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
 };
 
@@ -58,6 +61,15 @@ bool has_convection(const Discretisation<dim>& disc) {
 template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
                       const Eigen::VectorXd& b, F&& f);
+
+/// Visits every entry of what depends on the convecting field: convection and the penalty on velocity jumps
+/// that the local velocity scales.
+template <int dim, class F>
+void visit_flow_dependent(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                          const Eigen::VectorXd& b, F&& f) {
+  visit_convection(disc, operators, b, f);
+  visit_velocity_jumps<dim>(disc, operators.velocity_jumps, b, f);
+}
 
 /// Sum of `values` over all ranks, in place.
 void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values);

@@ -80,6 +80,44 @@ TEST_P(Forms, ConvectionTransportsMomentum) {
   EXPECT_NE(skew, 0.0);
 }
 
+/// The penalty that the local velocity scales: nothing for linear fields or a fluid at rest, positive and
+/// proportional to the velocity else; in a uniform stream no more than with that speed as the reference.
+TEST_P(Forms, JumpsScaledByTheLocalVelocity) {
+  auto problem = channel_with_plate(GetParam());
+  const double speed = 3.0;
+  problem.stabilisation.velocity_scale = VelocityScale::local;
+  PhaseTimer timer;
+  const auto disc = discretise(problem, CutOptions{});
+  const auto local = build_operators(disc, MPI_COMM_SELF, timer);
+  const auto penalty = [&](double scale, const Eigen::VectorXd& a) {
+    const auto b = interpolate_velocity(disc, [&](const Point<2>&) { return Point<2>(0, scale * speed); });
+    double sum = 0, size = 0;
+    visit_velocity_jumps<2>(disc, local.velocity_jumps, b, [&](int i, int j, double value) {
+      sum += a[i] * value * a[j];
+      size += std::abs(a[i] * value * a[j]);
+    });
+    return std::pair(sum, size);
+  };
+  const auto linear = interpolate_velocity(
+      disc, [](const Point<2>& x) { return Point<2>(x[0] - 2 * x[1], 0.3 + x[0] + 4 * x[1]); });
+  EXPECT_NEAR(penalty(1, linear).first, 0, 1e-12 * penalty(1, linear).second);
+  const auto wild = random_vector(disc.unknowns(), 3);
+  EXPECT_EQ(penalty(0, wild).first, 0);
+  EXPECT_GT(penalty(1, wild).first, 0);
+  EXPECT_NEAR(penalty(2, wild).first, 2 * penalty(1, wild).first, 1e-12 * penalty(2, wild).second);
+
+  problem.stabilisation.velocity_scale = VelocityScale::reference;
+  problem.stabilisation.reference_velocity = speed;
+  const auto everywhere = build_operators(discretise(problem, CutOptions{}), MPI_COMM_SELF, timer);
+  EXPECT_TRUE(everywhere.velocity_jumps.empty());
+  problem.stabilisation.velocity_jump = 0;
+  const auto without = build_operators(discretise(problem, CutOptions{}), MPI_COMM_SELF, timer);
+  // phi, too, knows the reference velocity, but is the same in both.
+  const double most = wild.dot(everywhere.stabilisation * wild - without.stabilisation * wild);
+  EXPECT_LT(penalty(1, wild).first, most);
+  EXPECT_GT(penalty(1, wild).first, 0.3 * most);
+}
+
 TEST_P(Forms, MassIsDensityTimesVolume) {
   const Channel channel(GetParam());
   const bool round = GetParam() == Space::axisymmetric;
