@@ -1,6 +1,7 @@
 // What a run reports at every step, in cgs.
 #pragma once
 
+#include "fom/moving/motion_report.hpp"
 #include "fom/stated_observables.hpp"
 
 namespace undula {
@@ -31,6 +32,7 @@ struct Observation {
   double clearance_min = 0;       ///< cm, displaced skin to walls; negative where the skin has passed a wall
   double tip_displacement = 0;    ///< cm, axial, innermost probe
   double holder_displacement = 0; ///< cm, axial, outermost probe
+  MotionReport motion;            ///< of couplings that move the domain
   std::vector<double> stated;     ///< by StatedObservables::columns, cgs
 };
 

@@ -37,16 +37,18 @@ void set_operating_point(PreparedScene& prepared, const Scene& scene) {
 namespace {
 
 /// Steps and observes until the scene's last step. `stepper` advances a state; `last_step` gives the
-/// TimeStepper of the step that ended.
-template <class Stepper, class LastStep>
+/// TimeStepper of the step that ended, `motion` what moved in it.
+template <class Stepper, class LastStep, class Motion>
 void step_and_observe(PreparedScene& prepared, int last, State& state, PhaseTimer& timer,
-                      const StepCallback& on_step, Stepper& stepper, const LastStep& last_step) {
+                      const StepCallback& on_step, Stepper& stepper, const LastStep& last_step,
+                      const Motion& motion) {
   while (state.step < last) {
     stepper.advance(state);
     Observation seen;
     {
       const auto scope = timer.measure("observe");
       seen = observe(prepared.disc, prepared.operators, last_step(), prepared.observation, state);
+      seen.motion = motion();
     }
     on_step(state, seen);
   }
@@ -60,14 +62,16 @@ void march(PreparedScene& prepared, const Scene& scene, State& state, PhaseTimer
   if (scene.coupling == Coupling::fixed) {
     TimeStepper<2> stepper(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
                            scene.time.factor_every, timer, scene.time.newton);
-    step_and_observe(prepared, last, state, timer, on_step, stepper,
-                     [&]() -> const TimeStepper<2>& { return stepper; });
+    step_and_observe(
+        prepared, last, state, timer, on_step, stepper, [&]() -> const TimeStepper<2>& { return stepper; },
+        [] { return MotionReport(); });
     return;
   }
   MovingStepper<2> stepper(prepared.disc, prepared.operators, scene.coupling, scene.time, scene.contact,
                            time_step(scene), timer, state);
-  step_and_observe(prepared, last, state, timer, on_step, stepper,
-                   [&]() -> const TimeStepper<2>& { return stepper.last_step(); });
+  step_and_observe(
+      prepared, last, state, timer, on_step, stepper,
+      [&]() -> const TimeStepper<2>& { return stepper.last_step(); }, [&] { return stepper.report(); });
 }
 
 } // namespace undula

@@ -11,7 +11,8 @@ constexpr double mW_per_erg_per_s = 1e-4;
 constexpr double uJ_per_erg = 0.1;
 constexpr double mW_per_uJ_per_s = 1e-3;
 
-enum class In { all, pump, stated };
+/// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves.
+enum class In { all, pump, stated, moving };
 
 struct Column {
   const char* name;
@@ -52,7 +53,31 @@ constexpr Column columns[] = {
      In::pump},
     {"holder_displacement_mm",
      [](const Observation& o) { return units::length_to_mm(o.holder_displacement); }, In::pump},
+    {"contact_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.contact; }, In::moving,
+     true},
+    {"step_parts", [](const Observation& o) { return static_cast<double>(o.motion.parts); }, In::moving},
+    {"new_fluid_nodes", [](const Observation& o) { return static_cast<double>(o.motion.new_nodes); },
+     In::moving},
+    {"contact_nodes", [](const Observation& o) { return static_cast<double>(o.motion.contact_nodes); },
+     In::moving},
+    {"volume_ratio_min", [](const Observation& o) { return o.motion.smallest_volume_ratio; }, In::moving},
+    {"placement_error_mm", [](const Observation& o) { return units::length_to_mm(o.motion.placement_error); },
+     In::moving},
 };
+
+bool has(const RowLayout& layout, const Column& column) {
+  switch (column.in) {
+    case In::pump:
+      return layout.pump;
+    case In::stated:
+      return !layout.pump;
+    case In::moving:
+      return layout.moving;
+    case In::all:
+      break;
+  }
+  return true;
+}
 
 /// Values of a table by the name of their column.
 class Rows {
@@ -61,6 +86,10 @@ public:
   double operator()(std::size_t row, const char* name) const {
     const auto found = std::find(table_.columns.begin(), table_.columns.end(), name);
     return table_.value(row, static_cast<std::size_t>(found - table_.columns.begin()));
+  }
+
+  bool has(const char* name) const {
+    return std::find(table_.columns.begin(), table_.columns.end(), name) != table_.columns.end();
   }
 
 private:
@@ -72,7 +101,7 @@ private:
 std::vector<std::string> observation_columns(const RowLayout& layout) {
   std::vector<std::string> names;
   for (const auto& column : columns)
-    if (column.in == In::all || (column.in == In::pump) == layout.pump)
+    if (has(layout, column))
       names.push_back(column.name + std::string(column.extensive && layout.per_depth ? "_per_cm" : ""));
   for (const auto& column : layout.stated) names.push_back(column.name);
   return names;
@@ -81,7 +110,7 @@ std::vector<std::string> observation_columns(const RowLayout& layout) {
 std::vector<double> observation_row(const Observation& seen, const RowLayout& layout) {
   std::vector<double> values;
   for (const auto& column : columns)
-    if (column.in == In::all || (column.in == In::pump) == layout.pump) values.push_back(column.value(seen));
+    if (has(layout, column)) values.push_back(column.value(seen));
   for (std::size_t i = 0; i < layout.stated.size(); ++i)
     values.push_back(seen.stated[i] / layout.stated[i].cgs_per_unit);
   return values;
@@ -126,8 +155,11 @@ std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_
     const double duration =
         value(begin + length - 1, "time_s") - (begin == 0 ? 0.0 : value(begin - 1, "time_s"));
     const double growth = mW_per_uJ_per_s * (stored(begin + length) - stored(begin)) / duration;
-    const double gap = holder + opening - mean("viscous_power_mW") - mean("stabilisation_power_mW") -
-                       mean("damping_power_mW") - mean("carried_power_mW") - growth;
+    double spent = 0;
+    for (const char* name : {"viscous_power_mW", "stabilisation_power_mW", "damping_power_mW",
+                             "carried_power_mW", "contact_power_mW"})
+      if (value.has(name)) spent += mean(name);
+    const double gap = holder + opening - spent - growth;
     period.energy_gap = period.input_power_mW != 0 ? gap / period.input_power_mW : 0.0;
     period.speed_max_cm_per_s = extremes("speed_max_cm_per_s").second;
     period.clearance_min_mm = extremes("clearance_min_mm").first;

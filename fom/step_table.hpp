@@ -10,6 +10,7 @@ namespace undula {
 struct RowLayout {
   bool pump = true;
   bool per_depth = false; ///< plane: powers and energies per cm of depth
+  bool moving = false;    ///< the fluid's domain moves
   std::vector<StatedColumn> stated;
 };
 
@@ -26,8 +27,9 @@ struct PeriodSummary {
   double inflow_l_per_min = 0;  ///< mean
   double spread_l_per_min = 0;  ///< highest minus lowest outflow
   double input_power_mW = 0;    ///< mean power of the holder, and of the openings where they drive
-  /// (holder + opening - viscous - stabilisation - damping - carried - growth of kinetic and elastic energy)
-  /// as a part of the input power: what the time scheme dissipates, and errors. 0 without input.
+  /// (holder + opening - viscous - stabilisation - damping - carried - contact - growth of kinetic and
+  /// elastic energy) as a part of the input power: what the time scheme dissipates, and errors. 0 without
+  /// input.
   double energy_gap = 0;
   double speed_max_cm_per_s = 0;
   double clearance_min_mm = 0;

@@ -165,8 +165,10 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
     state.placement = placement;
     error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();
     report_.iterations = std::max(report_.iterations, turn);
-    report_.placement_error = std::max(report_.placement_error, error);
-    if (coupling_ != Coupling::implicit || error <= settings_.motion.tolerance) return;
+    if (coupling_ != Coupling::implicit || error <= settings_.motion.tolerance) {
+      report_.placement_error = std::max(report_.placement_error, error);
+      return;
+    }
     placement = state.d[0].tail(solids);
   }
   throw NumericsError("cut and solve do not settle",

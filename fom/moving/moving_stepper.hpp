@@ -10,20 +10,10 @@
 
 #include "fom/mapping/domain_extension.hpp"
 #include "fom/moving/field_transfer.hpp"
+#include "fom/moving/motion_report.hpp"
 #include "fom/time_stepper.hpp"
 
 namespace undula {
-
-/// What moved in one step.
-struct MotionReport {
-  int parts = 1;                    ///< steps that the regular step was divided into
-  int iterations = 1;               ///< turns of placing and solving, the most of all parts
-  int new_nodes = 0;                ///< fluid nodes that took their history from the extension
-  int contact_nodes = 0;            ///< nodes of the skin in the film of contact
-  int contact_iterations = 0;       ///< linearisations of the film, the most of all parts
-  double smallest_volume_ratio = 1; ///< of J of the domain's map
-  double placement_error = 0;       ///< cm, largest difference between placed and computed displacement
-};
 
 template <int dim>
 class MovingStepper {

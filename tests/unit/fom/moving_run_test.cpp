@@ -162,6 +162,35 @@ TEST_P(MovingRunTest, DrawsTheFluidWhereItIs) {
   }
 }
 
+TEST_P(MovingRunTest, SaysWhatMoved) {
+  const std::string coupling = GetParam();
+  run(bent_leaf(coupling), "run", ExistingRun::refuse);
+  const auto table = read_time_series(folder / "run" / "time_series.csv");
+  const auto column = [&](const std::string& name) {
+    const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+    EXPECT_NE(found, table.columns.end()) << name;
+    std::vector<double> values;
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      values.push_back(table.value(row, static_cast<std::size_t>(found - table.columns.begin())));
+    return values;
+  };
+  const auto volume = column("volume_ratio_min"), nodes = column("new_fluid_nodes"),
+             error = column("placement_error_mm");
+  if (coupling == "mapped") {
+    EXPECT_LT(volume.back(), 0.999);
+    EXPECT_GT(volume.back(), 0);
+    EXPECT_EQ(*std::max_element(nodes.begin(), nodes.end()), 0);
+  } else {
+    EXPECT_EQ(volume.back(), 1);
+    EXPECT_GT(*std::max_element(nodes.begin(), nodes.end()), 0);
+  }
+  EXPECT_GT(*std::max_element(error.begin(), error.end()), 0);
+  if (coupling == "implicit") {
+    EXPECT_LE(*std::max_element(error.begin(), error.end()), 1e-4);
+  }
+  EXPECT_EQ(column("step_parts").back(), 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Couplings, MovingRunTest, testing::Values("explicit", "implicit", "mapped"),
                          [](const auto& instance) { return std::string(instance.param); });
 
