@@ -125,17 +125,13 @@ DomainExtension<dim> prepare_extension(const Discretisation<dim>& disc, const Ex
   DomainExtension<dim> extension;
   const auto geometries = part_geometries(disc);
   const std::vector<double> even(disc.cut.parts.size(), 1.0);
-  for (int c = 0; c < dim; ++c) {
-    Point<dim> axes = Point<dim>::Constant(settings.shear_weight);
-    axes[c] = 1;
-    auto problem = weighted_laplace<dim>(disc, geometries, even, axes);
-    keep_regular(problem.matrix);
-    extension.smooth[c] =
-        std::make_unique<typename DomainExtension<dim>::Factors>(Eigen::SparseMatrix<double>(problem.matrix));
-    expect_factored(*extension.smooth[c]);
-    extension.data[c] = problem.data;
-    extension.reach[c] = reach_of<dim>(disc, geometries, c, settings);
-  }
+  auto problem = weighted_laplace<dim>(disc, geometries, even, Point<dim>::Ones());
+  keep_regular(problem.matrix);
+  extension.smooth =
+      std::make_unique<typename DomainExtension<dim>::Factors>(Eigen::SparseMatrix<double>(problem.matrix));
+  expect_factored(*extension.smooth);
+  extension.data = problem.data;
+  for (int c = 0; c < dim; ++c) extension.reach[c] = reach_of<dim>(disc, geometries, c, settings);
   return extension;
 }
 
@@ -146,7 +142,7 @@ std::vector<Point<dim>> extend(const DomainExtension<dim>& extension,
   for (int c = 0; c < dim; ++c) {
     const Eigen::VectorXd on_solids = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<dim>>(
         solid_displacement.data() + c, solid_displacement.size() / dim);
-    const Eigen::VectorXd smooth = extension.smooth[c]->solve(extension.data[c] * on_solids);
+    const Eigen::VectorXd smooth = extension.smooth->solve(extension.data * on_solids);
     for (std::size_t node = 0; node < displacement.size(); ++node)
       displacement[node][c] = extension.reach[c][node] * smooth[node];
   }

@@ -6,11 +6,8 @@
 // tends to the extension of least slope (Aronsson 1967), which is linear across a gap and has no
 // concentration at the edge of a plate or the lip of an opening. A rigid motion by delta then changes a
 // length along delta by no more than about delta / (width of the gap), and the map folds only when a gap
-// closes; a harmonic extension (p = 2) folds much earlier.
-//
-// In both, slopes across the component's own axis only shear and count less than slopes along it, which
-// change the volume. D is therefore nearly constant across a gap; were it harmonic alike in all directions,
-// it would fall off steeply beside the tip of a bending plate and fold there while half the gap is open.
+// closes; a harmonic extension (p = 2) folds much earlier. Slopes across the component's own axis only shear
+// and count less.
 //
 // Linear in the displacement. Works on the nodes of the cut, so the two sides of a thin solid are apart.
 #pragma once
@@ -33,10 +30,9 @@ struct ExtensionSettings {
 template <int dim>
 struct DomainExtension {
   using Factors = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
-  // By component:
-  std::array<std::unique_ptr<Factors>, dim> smooth;  ///< of D, fluid nodes
-  std::array<Eigen::SparseMatrix<double>, dim> data; ///< fluid nodes x solid nodes: right-hand side of D
-  std::array<Eigen::VectorXd, dim> reach;            ///< fluid nodes
+  std::unique_ptr<Factors> smooth;        ///< of D, fluid nodes
+  Eigen::SparseMatrix<double> data;       ///< fluid nodes x solid nodes: right-hand side of D
+  std::array<Eigen::VectorXd, dim> reach; ///< by component, fluid nodes
 };
 
 /// Prepared once per cut. The displacement vanishes on walls and openings, its normal component on symmetric
