@@ -23,6 +23,10 @@ std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Opera
            {&operators.stiffness, factors.stiffness}}};
 }
 
+/// Iterations of GMRES for which old factors are good enough. Factoring costs about ten of them; where it
+/// would serve a single iteration of Newton's method, patience ends earlier.
+constexpr int most_corrections = 200, most_newton_corrections = 25;
+
 /// While it lives, MUMPS orders new factors by approximate minimum fill, unless an option says otherwise.
 /// Finding that order takes a fifth of the time of nested dissection, with a little more fill: right where a
 /// pattern serves one step. PETSc 3.18 loses what MatMumpsSetIcntl sets before the factors are begun, so it
@@ -140,7 +144,7 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(KSPCreate(operators.comm, solver_.out()), "creating the solver");
   check_petsc(KSPSetOptionsPrefix(solver_.get(), "fsi_"), "naming the solver");
   check_petsc(KSPSetType(solver_.get(), corrects ? KSPGMRES : KSPPREONLY), "choosing the solver");
-  check_petsc(KSPSetTolerances(solver_.get(), 1e-11, 1e-300, 1e10, 200), "setting tolerances");
+  check_petsc(KSPSetTolerances(solver_.get(), 1e-11, 1e-300, 1e10, most_corrections), "setting tolerances");
   PC preconditioner = nullptr;
   check_petsc(KSPGetPC(solver_.get(), &preconditioner), "getting the preconditioner");
   check_petsc(PCSetType(preconditioner, PCLU), "choosing LU");
@@ -251,6 +255,10 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
+    if (factor_every_ == 1)
+      check_petsc(KSPSetTolerances(solver_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                                   reuse ? most_newton_corrections : most_corrections),
+                  "setting tolerances");
   }
   const auto scope = timer_.measure("solve");
   check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
