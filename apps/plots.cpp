@@ -118,7 +118,8 @@ bool plot_lines(const std::filesystem::path& picture, const std::string& title, 
 bool plot_field(const std::filesystem::path& picture, const std::string& title, const FieldOnTriangles& field,
                 std::span<const std::vector<Eigen::Vector2d>> outlines) {
   // 1. Every triangle as a block of its own: a quadrilateral with two corners in one, which pm3d fills.
-  std::string data = "# blocks of triangles: r (cm), z (cm), " + field.label + "\n";
+  const std::string place = std::string(field.axes[0]) + ", " + field.axes[1];
+  std::string data = "# blocks of triangles: " + place + ", " + field.label + "\n";
   for (const auto& triangle : field.triangles) {
     double mean = 0;
     for (const int point : triangle) {
@@ -138,7 +139,7 @@ bool plot_field(const std::filesystem::path& picture, const std::string& title, 
   // points would be joined as a grid.
   if (!outlines.empty()) {
     for (const auto& outline : outlines) {
-      data += "# outline: r (cm), z (cm)\n";
+      data += "# outline: " + place + "\n";
       for (const Eigen::Vector2d& x : outline) {
         data += row(x[0], x[1]);
       }
@@ -151,7 +152,8 @@ bool plot_field(const std::filesystem::path& picture, const std::string& title, 
 
   // 3. Seen from above, equal scales, colours that stay readable in grey.
   const std::string commands =
-      axes(title, "r (cm)", "z (cm)") + "set view map\nset size ratio -1\nset pm3d corners2color c1\n" +
+      axes(title, field.axes[0], field.axes[1]) +
+      "set view map\nset size ratio -1\nset pm3d corners2color c1\n" +
       "set palette defined (0 '#352a87', 1 '#0868c6', 2 '#06a7c6', 3 '#7bbf6a', 4 '#f9c932', 5 '#f9fb0e')\n" +
       "set autoscale fix\nset cblabel " + gnuplot_string(field.label) + "\n" + plot_command("splot", items);
   return draw_picture(picture, data, commands);

@@ -43,13 +43,14 @@ struct Line {
 bool plot_lines(const std::filesystem::path& picture, const std::string& title, const std::string& x_label,
                 const std::string& y_label, std::span<const Line> lines);
 
-/// A field on triangles in the (r, z) plane, filled, with outlines (polylines, cm) drawn over it.
+/// A field on triangles, filled, with outlines (polylines, cm) drawn over it.
 /// `values` holds one value per point; there is at least one triangle.
 struct FieldOnTriangles {
   std::span<const Eigen::Vector2d> points; ///< cm
   std::span<const std::array<int, 3>> triangles;
   std::span<const double> values;
   std::string label; ///< quantity and unit, beside the colours
+  std::array<const char*, 2> axes = {"r (cm)", "z (cm)"};
 };
 bool plot_field(const std::filesystem::path& picture, const std::string& title, const FieldOnTriangles& field,
                 std::span<const std::vector<Eigen::Vector2d>> outlines);

@@ -55,11 +55,6 @@ std::vector<double> magnitudes(const NodalField& field) {
   return result;
 }
 
-FieldOnTriangles field_on(const FieldMesh<2>& mesh, std::span<const std::array<int, 3>> cells,
-                          const std::vector<double>& values, const char* label) {
-  return {mesh.points, cells, values, label};
-}
-
 void plot_state(const std::filesystem::path& folder, const LevelView& view, const State& state,
                 const std::string& title) {
   const FieldMesh<2> mesh = view.moved_fluid ? view.moved_fluid(state) : view.fluid;
@@ -75,9 +70,14 @@ void plot_state(const std::filesystem::path& folder, const LevelView& view, cons
     outlines.push_back({edge[0], edge[1]});
   }
   const auto& cells = mesh.cells;
-  plot_field(folder / "speed.png", title, field_on(mesh, cells, speed, "speed (cm/s)"), outlines);
-  plot_field(folder / "pressure.png", title, field_on(mesh, cells, pressure_mmHg, "pressure (mmHg)"),
-             outlines);
+  const auto field_on = [&](std::span<const std::array<int, 3>> triangles, const std::vector<double>& values,
+                            const char* label) {
+    FieldOnTriangles field{mesh.points, triangles, values, label};
+    if (view.rows.per_depth) field.axes = {"x (cm)", "y (cm)"};
+    return field;
+  };
+  plot_field(folder / "speed.png", title, field_on(cells, speed, "speed (cm/s)"), outlines);
+  plot_field(folder / "pressure.png", title, field_on(cells, pressure_mmHg, "pressure (mmHg)"), outlines);
 
   const Window window = membrane_window(view.membrane_box);
   std::vector<std::array<int, 3>> near;
@@ -89,8 +89,8 @@ void plot_state(const std::filesystem::path& folder, const LevelView& view, cons
     return !std::all_of(edge.begin(), edge.end(), [&](const auto& x) { return window.contains(x); });
   });
   if (!near.empty()) {
-    plot_field(folder / "speed_gap.png", title + ", at the membrane",
-               field_on(mesh, near, speed, "speed (cm/s)"), outlines);
+    plot_field(folder / "speed_gap.png", title + ", at the membrane", field_on(near, speed, "speed (cm/s)"),
+               outlines);
   }
 }
 
