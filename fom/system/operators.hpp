@@ -62,6 +62,11 @@ template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
                       const Eigen::VectorXd& b, F&& f);
 
+/// The part of it that carries kinetic energy through openings.
+template <int dim, class F>
+void visit_opening_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                              const Eigen::VectorXd& b, F&& f);
+
 /// Visits every entry of what depends on the convecting field: convection and the penalty on velocity jumps
 /// that the local velocity scales.
 template <int dim, class F>
@@ -75,6 +80,40 @@ void visit_flow_dependent(const Discretisation<dim>& disc, const Operators<dim>&
 void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values);
 
 // ---------------------------------------------------------------------------------------------------------------
+
+template <int dim, class F>
+void visit_opening_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                              const Eigen::VectorXd& b, F&& f) {
+  const double density = disc.problem.fluid.density;
+  if (disc.problem.flow != FlowModel::navier_stokes) return;
+  const Measure measure = measure_of(disc.problem.space);
+  const Share share{&operators.ownership.owner, operators.rank};
+  for (const auto& piece : disc.cut.boundary) {
+    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
+    if (condition.kind != BoundaryCondition<dim>::Kind::opening ||
+        condition.opening == OpeningCondition::total_pressure)
+      continue;
+    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
+    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+    const int cell = disc.cut.parts[piece.part].cell;
+    const auto& facet = disc.cut.facets.facets[piece.facet];
+    const Point<dim> normal = -operators.gradients[piece.part].col(facet.local[0]).normalized();
+    const auto velocity = part_velocity(disc, piece.part, b);
+    Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
+    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+      const auto& x = disc.cut.boundary_quadrature.points[q];
+      const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
+      double through = normal.dot(velocity * lambda);
+      if (condition.opening == OpeningCondition::static_pressure) through = std::max(through, 0.0);
+      local += 0.5 * density * disc.cut.boundary_quadrature.weights[q] * measure(x[0]) * through * lambda *
+               lambda.transpose();
+    }
+    for (int i = 0; i <= dim; ++i)
+      for (int j = 0; j <= dim; ++j)
+        for (int c = 0; c < dim; ++c)
+          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+  }
+}
 
 template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
@@ -117,31 +156,7 @@ void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& ope
     }
     return;
   }
-  for (const auto& piece : disc.cut.boundary) {
-    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
-    if (condition.kind != BoundaryCondition<dim>::Kind::opening ||
-        condition.opening == OpeningCondition::total_pressure)
-      continue;
-    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
-    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
-    const int cell = disc.cut.parts[piece.part].cell;
-    const auto& facet = disc.cut.facets.facets[piece.facet];
-    const Point<dim> normal = -operators.gradients[piece.part].col(facet.local[0]).normalized();
-    const auto velocity = part_velocity(disc, piece.part, b);
-    Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
-    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
-      const auto& x = disc.cut.boundary_quadrature.points[q];
-      const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
-      double through = normal.dot(velocity * lambda);
-      if (condition.opening == OpeningCondition::static_pressure) through = std::max(through, 0.0);
-      local += 0.5 * density * disc.cut.boundary_quadrature.weights[q] * measure(x[0]) * through * lambda *
-               lambda.transpose();
-    }
-    for (int i = 0; i <= dim; ++i)
-      for (int j = 0; j <= dim; ++j)
-        for (int c = 0; c < dim; ++c)
-          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
-  }
+  visit_opening_convection(disc, operators, b, f);
   if (!disc.interface_moves) return;
   for (const auto& piece : disc.cut.interface) {
     const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
