@@ -50,12 +50,13 @@ Eigen::Matrix<double, dim, dim + 1> domain_velocity(const Discretisation<dim>& d
 }
 
 template <int dim>
-double smallest_volume_ratio(const Discretisation<dim>& disc) {
-  if (disc.cut.parts.empty()) return std::numeric_limits<double>::infinity();
-  if (disc.map.is_identity()) return 1.0;
+SmallestVolume<dim> smallest_volume(const Discretisation<dim>& disc) {
+  SmallestVolume<dim> smallest;
+  if (disc.cut.parts.empty()) smallest.ratio = std::numeric_limits<double>::infinity();
+  if (disc.cut.parts.empty() || disc.map.is_identity()) return smallest;
+  smallest.ratio = std::numeric_limits<double>::infinity();
   const bool hoop = disc.problem.space == Space::axisymmetric;
   const auto rule = reference_rule<dim>(1);
-  double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
     const int part = static_cast<int>(p);
     const auto geometry = part_geometry(disc, part);
@@ -70,7 +71,11 @@ double smallest_volume_ratio(const Discretisation<dim>& disc) {
     // Both factors negative would be a folded element too.
     const double ratio = geometry.volume_ratio > 0 ? geometry.volume_ratio * hoop_stretch
                                                    : std::min(geometry.volume_ratio, hoop_stretch);
-    smallest = std::min(smallest, ratio);
+    if (ratio >= smallest.ratio) continue;
+    smallest.ratio = ratio;
+    smallest.place.setZero();
+    for (const int point : disc.cut.mesh.cells[disc.cut.parts[p].cell])
+      smallest.place += disc.cut.mesh.points[point] / (dim + 1);
   }
   return smallest;
 }
@@ -78,6 +83,6 @@ double smallest_volume_ratio(const Discretisation<dim>& disc) {
 template PartGeometry<2> part_geometry(const Discretisation<2>&, int);
 template std::vector<PartGeometry<2>> part_geometries(const Discretisation<2>&);
 template Eigen::Matrix<double, 2, 3> domain_velocity(const Discretisation<2>&, int);
-template double smallest_volume_ratio(const Discretisation<2>&);
+template SmallestVolume<2> smallest_volume(const Discretisation<2>&);
 
 } // namespace undula

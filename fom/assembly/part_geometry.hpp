@@ -44,6 +44,17 @@ Eigen::Matrix<double, dim, dim + 1> domain_velocity(const Discretisation<dim>& d
 /// times the stretch of the hoop. 1 for the identity, infinite without fluid; where it is not positive the
 /// map has folded.
 template <int dim>
-double smallest_volume_ratio(const Discretisation<dim>& disc);
+struct SmallestVolume {
+  double ratio = 1;
+  Point<dim> place = Point<dim>::Zero(); ///< centre of that element at rest, cm
+};
+template <int dim>
+SmallestVolume<dim> smallest_volume(const Discretisation<dim>& disc);
+
+/// The ratio alone.
+template <int dim>
+double smallest_volume_ratio(const Discretisation<dim>& disc) {
+  return smallest_volume(disc).ratio;
+}
 
 } // namespace undula

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "fom/mapping/skin_elasticity.hpp"
 #include "fom/mapping/weighted_laplace.hpp"
 
 namespace undula {
@@ -30,6 +31,21 @@ void hold(const std::vector<char>& at_rest, SparseMatrix& matrix) {
   for (int row = 0; row < matrix.outerSize(); ++row)
     for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
       if (at_rest[row] || at_rest[entry.col()]) entry.valueRef() = entry.col() == row ? 1.0 : 0.0;
+}
+
+/// Mean thickness of the solids: twice their volume over the area of their skins (plain measures), cm.
+template <int dim>
+double mean_thickness(const Discretisation<dim>& disc) {
+  double volume = 0, skin = 0;
+  for (const auto& body : disc.problem.solids) {
+    for (std::size_t cell = 0; cell < body.mesh.cells.size(); ++cell)
+      volume += cell_measure(body.mesh, static_cast<int>(cell));
+    for (const auto& facet : build_facet_table(body.mesh).facets)
+      if (facet.cells[1] < 0)
+        skin += dim * cell_measure(body.mesh, facet.cells[0]) *
+                barycentric_gradients(body.mesh, facet.cells[0]).col(facet.local[0]).norm();
+  }
+  return skin > 0 ? 2 * volume / skin : 0.0;
 }
 
 /// A trace of a zeroth-order term, for nodes that no skin is connected with.
@@ -95,9 +111,8 @@ Eigen::VectorXd reach_of(const Discretisation<dim>& disc, std::span<const PartGe
   bool analysed = false;
   const auto solve = [&] {
     auto problem = weighted_laplace<dim>(disc, geometries, weights, axes);
-    Eigen::VectorXd rhs = problem.data * Eigen::VectorXd::Ones(problem.data.cols());
-    for (Eigen::Index node = 0; node < rhs.size(); ++node)
-      if (at_rest[node]) rhs[node] = 0;
+    for (Eigen::Index node = 0; node < problem.rhs.size(); ++node)
+      if (at_rest[node]) problem.rhs[node] = 0;
     hold(at_rest, problem.matrix);
     keep_regular(problem.matrix);
     const Eigen::SparseMatrix<double> matrix = problem.matrix;
@@ -105,7 +120,7 @@ Eigen::VectorXd reach_of(const Discretisation<dim>& disc, std::span<const PartGe
     analysed = true;
     factors.factorize(matrix);
     expect_factored(factors);
-    return Eigen::VectorXd(factors.solve(rhs));
+    return Eigen::VectorXd(factors.solve(problem.rhs));
   };
   Eigen::VectorXd reach = solve();
   for (double exponent = 4; settings.exponent > 2; exponent = std::min(2 * exponent, settings.exponent)) {
@@ -124,8 +139,7 @@ template <int dim>
 DomainExtension<dim> prepare_extension(const Discretisation<dim>& disc, const ExtensionSettings& settings) {
   DomainExtension<dim> extension;
   const auto geometries = part_geometries(disc);
-  const std::vector<double> even(disc.cut.parts.size(), 1.0);
-  auto problem = weighted_laplace<dim>(disc, geometries, even, Point<dim>::Ones());
+  auto problem = skin_elasticity<dim>(disc, geometries, settings.smoothing * mean_thickness(disc));
   keep_regular(problem.matrix);
   extension.smooth =
       std::make_unique<typename DomainExtension<dim>::Factors>(Eigen::SparseMatrix<double>(problem.matrix));
@@ -138,14 +152,11 @@ DomainExtension<dim> prepare_extension(const Discretisation<dim>& disc, const Ex
 template <int dim>
 std::vector<Point<dim>> extend(const DomainExtension<dim>& extension,
                                const Eigen::VectorXd& solid_displacement) {
+  const Eigen::VectorXd smooth = extension.smooth->solve(extension.data * solid_displacement);
   std::vector<Point<dim>> displacement(extension.reach[0].size());
-  for (int c = 0; c < dim; ++c) {
-    const Eigen::VectorXd on_solids = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<dim>>(
-        solid_displacement.data() + c, solid_displacement.size() / dim);
-    const Eigen::VectorXd smooth = extension.smooth->solve(extension.data * on_solids);
-    for (std::size_t node = 0; node < displacement.size(); ++node)
-      displacement[node][c] = extension.reach[c][node] * smooth[node];
-  }
+  for (std::size_t node = 0; node < displacement.size(); ++node)
+    for (int c = 0; c < dim; ++c)
+      displacement[node][c] = extension.reach[c][node] * smooth[static_cast<Eigen::Index>(node) * dim + c];
   return displacement;
 }
 

@@ -1,20 +1,24 @@
-// Scalar diffusion on the fluid's nodes of a cut, with given values on the skin of the solids.
+// Scalar diffusion on the fluid's nodes of a cut, with the value 1 on the skin of the solids.
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "fom/assembly/part_geometry.hpp"
 #include "fom/assembly/sparse.hpp"
 
 namespace undula {
 
-/// -div(K grad y) = 0 in the fluid at rest, K = weight * diag(axes) with one weight per part, y = g on the
+// Nitsche's penalty, well above the trace constants of linear elements, and the ghost penalty, which bounds
+// those of cut ones.
+constexpr double map_skin_penalty = 20, map_ghost_penalty = 0.1;
+
+/// -div(K grad y) = 0 in the fluid at rest, K = weight * diag(axes) with one weight per part, y = 1 on the
 /// skin by Nitsche's method with ghost penalty, free on the boundary. Plain integrals: no factor r in
 /// axisymmetric space.
 template <int dim>
 struct WeightedLaplace {
   SparseMatrix matrix; ///< fluid nodes x fluid nodes, symmetric, positive where a skin is in reach
-  SparseMatrix data;   ///< fluid nodes x solid nodes (of all solids in a row): right-hand side = data * g
+  Eigen::VectorXd rhs;
 };
 
 /// `weights` by part, positive.

@@ -138,11 +138,13 @@ void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, 
                           alpha[2] * older.template segment<dim>(at)) /
                          dt;
   }
-  const double ratio_of_volumes = smallest_volume_ratio(disc_);
-  report_.smallest_volume_ratio = std::min(report_.smallest_volume_ratio, ratio_of_volumes);
-  if (ratio_of_volumes <= 0)
+  const auto smallest = smallest_volume(disc_);
+  report_.smallest_volume_ratio = std::min(report_.smallest_volume_ratio, smallest.ratio);
+  if (smallest.ratio <= 0)
     throw NumericsError("the map of the fluid's domain folds",
-                        "smallest volume ratio " + std::to_string(ratio_of_volumes),
+                        "volume ratio " + std::to_string(smallest.ratio) + " of the element at rest about (" +
+                            std::to_string(smallest.place[0]) + ", " + std::to_string(smallest.place[1]) +
+                            ") cm",
                         "coupling = \"explicit\", which cuts anew, or less stroke");
 }
 

@@ -32,11 +32,19 @@ Eigen::VectorXd solid_displacement(const Discretisation<2>& disc, const Profile&
   return d;
 }
 
-/// Multiple of the displacement at which an element folds. J is linear in an axial displacement.
+/// Smallest multiple of the displacement at which an element folds, to 0.5 % of `most`; `most` if none does.
 double folding_multiple(Discretisation<2>& disc, const DomainExtension<2>& extension,
-                        const Eigen::VectorXd& displacement) {
-  disc.map.displacement = extend(extension, displacement);
-  return 1 / (1 - smallest_volume_ratio(disc));
+                        const Eigen::VectorXd& displacement, double most) {
+  const auto whole = extend(extension, displacement);
+  constexpr int steps = 200;
+  for (int step = 1; step < steps; ++step) {
+    disc.map.displacement = whole;
+    for (auto& d : disc.map.displacement) d *= most * step / steps;
+    const bool folded = smallest_volume_ratio(disc) <= 0;
+    disc.map.displacement = whole;
+    if (folded) return most * step / steps;
+  }
+  return most;
 }
 
 /// Multiple of an axial displacement at which a vertex of the first solid's skin meets a wall above or below.
@@ -139,11 +147,12 @@ TEST(DomainExtension, FoldsOnlyWhenAGapCloses) {
     const Profile profile = [&](const Point<2>&) { return Point<2>(0.0, direction); };
     const auto displacement = solid_displacement(disc, profile);
     const double closed = closing_multiple(disc, profile);
-    const double folds_plain = folding_multiple(disc, plain, displacement) / closed;
-    const double folds = folding_multiple(disc, extension, displacement) / closed;
+    const double folds_plain = folding_multiple(disc, plain, displacement, closed) / closed;
+    const double folds = folding_multiple(disc, extension, displacement, closed) / closed;
     const auto [largest, mean] = mismatch(disc, displacement);
     std::printf(
-        "plate %+.0f: gap %.4f cm; folds at %.3f of it, harmonic %.3f; off the skin by at most %.4f, rms "
+        "plate %+.0f: gap %.4f cm; folds at %.3f of it, harmonic reach %.3f; off the skin by at most %.4f, "
+        "rms "
         "%.4f of the displacement\n",
         direction, closed, folds, folds_plain, largest, mean);
     EXPECT_GT(folds, 0.9);
@@ -154,7 +163,7 @@ TEST(DomainExtension, FoldsOnlyWhenAGapCloses) {
 
 /// The pump's membrane bent at its tip, and carried as a whole with its holder.
 TEST(DomainExtension, FoldsOnlyWhenAGapClosesInThePump) {
-  for (const double elements : {3.0, 5.0}) {
+  for (const double elements : {3.0, 5.0, 12.0}) {
     auto disc = pump(elements);
     const auto start = std::chrono::steady_clock::now();
     const auto extension = prepare_extension(disc);
@@ -175,20 +184,61 @@ TEST(DomainExtension, FoldsOnlyWhenAGapClosesInThePump) {
         };
         const auto displacement = solid_displacement(disc, profile);
         const double closed = closing_multiple(disc, profile);
-        const double folds_plain = folding_multiple(disc, plain, displacement) / closed;
-        const double folds = folding_multiple(disc, extension, displacement) / closed;
+        const double folds_plain = folding_multiple(disc, plain, displacement, closed) / closed;
+        const double folds = folding_multiple(disc, extension, displacement, closed) / closed;
         const auto [largest, mean] = mismatch(disc, displacement);
         std::printf(
-            "  %s %+.0f: gap %.4f cm; folds at %.3f of it, harmonic %.3f; off the skin by at most %.4f, "
+            "  %s %+.0f: gap %.4f cm; folds at %.3f of it, harmonic reach %.3f; off the skin by at most "
+            "%.4f, "
             "rms %.4f of the displacement\n",
             bends ? "bent   " : "carried", direction, closed, folds, folds_plain, largest, mean);
-        EXPECT_GT(folds, bends ? 0.85 : 0.97);
+        EXPECT_GT(folds, bends ? 0.93 : 0.98);
         if (!bends) {
           EXPECT_GT(folds, 1.1 * folds_plain);
         }
         EXPECT_LT(mean, 0.02);
       }
   }
+}
+
+/// A flag that stands in the left wall of a channel, n elements across it, rolled up evenly: turned by 0.6 at
+/// its tip, which rises by half of the gap. The fluid turns along; what is left of the volume of the smallest
+/// element.
+double volume_left_at_a_turning_tip(int n, double smoothing) {
+  FsiProblem<2> problem;
+  problem.fluid = {1, 1};
+  problem.stabilisation = default_weights(1, 1);
+  const double h = 0.2 / n;
+  problem.background =
+      tensor_mesh(spaced(0, 4.8, static_cast<int>(4.8 / h)), spaced(0, 4.1, static_cast<int>(4.1 / h)),
+                  {"wall", "wall", "wall", "wall"});
+  problem.boundary["wall"].kind = BoundaryCondition<2>::Kind::velocity;
+  SolidBody<2> flag;
+  flag.mesh = box({-0.35, 1.95}, {3.5, 2.15}, 77, 4);
+  flag.properties = {1, 1e6, 0.3, 0.0};
+  problem.solids.push_back(std::move(flag));
+  auto disc = discretise(std::move(problem), CutOptions{});
+  ExtensionSettings settings;
+  settings.smoothing = smoothing;
+  const double curvature = 0.6 / 3.5;
+  disc.map.displacement =
+      extend(prepare_extension(disc, settings), solid_displacement(disc, [&](const Point<2>& x) {
+               const double turn = curvature * std::max(x[0], 0.0), off = x[1] - 2.05;
+               const double along = x[0] > 0 ? std::sin(turn) / curvature : x[0];
+               const Point<2> moved(along - off * std::sin(turn),
+                                    2.05 + (1 - std::cos(turn)) / curvature + off * std::cos(turn));
+               return Point<2>(moved - x);
+             }));
+  const auto smallest = smallest_volume(disc);
+  std::printf("turning tip, %d elements across, smoothed over %.0f thicknesses: J %.3f at (%.2f, %.2f)\n", n,
+              smoothing, smallest.ratio, smallest.place[0], smallest.place[1]);
+  return smallest.ratio;
+}
+
+TEST(DomainExtension, TurnsTheFluidWithATip) {
+  EXPECT_GT(volume_left_at_a_turning_tip(6, ExtensionSettings{}.smoothing), 0.2);
+  // An elastic medium alone has a corner's singularity.
+  EXPECT_LT(volume_left_at_a_turning_tip(6, 0), 0.0);
 }
 
 } // namespace

@@ -14,8 +14,10 @@
 namespace undula {
 namespace {
 
-/// A leaf that stands in a channel of 16 x 8 mm, bent by the flow until it crosses elements.
+/// A leaf that stands in a channel of 16 x 8 mm, bent by the flow until it crosses elements. A map has to
+/// resolve the leaf, which is thinner than the elements of a cut may be.
 Scene bent_leaf(const std::string& coupling) {
+  const std::string size = coupling == "mapped" ? "0.3" : "1.2";
   return parse_scene(R"toml(
 name = "leaf"
 [model]
@@ -25,7 +27,7 @@ coupling = ")toml" + coupling +
 [domain]
 outline_mm = [[0.0, 0.0], [16.0, 0.0], [16.0, 8.0], [0.0, 8.0]]
 sides = ["lower", "outlet", "upper", "inlet"]
-size_mm = 1.2
+size_mm = )toml" + size + R"toml(
 [boundary.inlet]
 kind = "velocity"
 velocity_cm_per_s = ["0.6*y*(8 - y)*ramp(t, 0.02)", "0"]
