@@ -231,17 +231,22 @@ void LinearSystem<dim>::replace_tangents(
 }
 
 template <int dim>
-Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, int iteration) {
+void LinearSystem<dim>::fill(Vec vector, const Eigen::VectorXd& values) {
   const auto& index = operators_.ownership.petsc_index;
   const int first = operators_.ownership.first[operators_.rank];
-  {
-    double* values = nullptr;
-    check_petsc(VecGetArray(rhs_.get(), &values), "writing the right-hand side");
-    for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
-      if (operators_.ownership.owner[unknown] == operators_.rank)
-        values[index[unknown] - first] = rhs[unknown];
-    check_petsc(VecRestoreArray(rhs_.get(), &values), "writing the right-hand side");
-  }
+  double* entries = nullptr;
+  check_petsc(VecGetArray(vector, &entries), "filling a vector");
+  for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
+    if (operators_.ownership.owner[unknown] == operators_.rank)
+      entries[index[unknown] - first] = values[unknown];
+  check_petsc(VecRestoreArray(vector, &entries), "filling a vector");
+}
+
+template <int dim>
+Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, int iteration,
+                                         const Eigen::VectorXd* guess) {
+  const auto& index = operators_.ownership.petsc_index;
+  fill(rhs_.get(), rhs);
   bool reuse = false;
   {
     const auto scope = timer_.measure("factor");
@@ -261,6 +266,10 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
                   "setting tolerances");
   }
   const auto scope = timer_.measure("solve");
+  const bool guessed = guess && reuse;
+  check_petsc(KSPSetInitialGuessNonzero(solver_.get(), guessed ? PETSC_TRUE : PETSC_FALSE),
+              "setting the guess");
+  if (guessed) fill(solution_.get(), *guess);
   check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");

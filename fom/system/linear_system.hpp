@@ -44,8 +44,9 @@ public:
   /// Phases "factor" and "solve". Throws NumericsError on every rank if the solver fails or x is not finite.
   /// `step` decides when to factor anew: the first step after a multiple of factor_every does, so that a
   /// restart from a state at such a multiple repeats the run. From Newton's second `iteration` of a step on
-  /// the factors stay as long as GMRES gets on with them.
-  Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step, int iteration = 1);
+  /// the factors stay as long as GMRES gets on with them, from `guess` if one is given.
+  Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step, int iteration = 1,
+                        const Eigen::VectorXd* guess = nullptr);
 
   Mat matrix() const { return matrix_.get(); }
 
@@ -53,7 +54,8 @@ private:
   void collect_pattern();
   int place_of(int row, int column) const;
   void sum_constant_terms(const SystemFactors& factors);
-  void write(std::vector<double>& values); ///< puts 1 on the diagonal of constrained rows
+  void fill(Vec vector, const Eigen::VectorXd& values); ///< with this rank's share of them
+  void write(std::vector<double>& values);              ///< puts 1 on the diagonal of constrained rows
 
   const Discretisation<dim>& disc_;
   const Operators<dim>& operators_;

@@ -72,7 +72,7 @@ int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, con
     if (!force.allFinite()) give_up("the law is not finite, an element is inside out", iteration, error);
     system.replace_tangents(here.tangents);
     Eigen::VectorXd next =
-        system.solve(rhs + free(product(here, x, false) - force), step, keep_factors ? iteration : 1);
+        system.solve(rhs + free(product(here, x, false) - force), step, keep_factors ? iteration : 1, &x);
     const Eigen::VectorXd linear = force + product(here, next - x, false);
     const double rounding = 4 * std::numeric_limits<double>::epsilon() *
                             product(here, displacement(next), true).norm() / motion.rates.d;
