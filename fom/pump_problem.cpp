@@ -45,7 +45,7 @@ PumpMeshes pump_meshes(const Scene& scene) {
   const auto profile = scene_profile(scene);
   const PumpMeshSizes sizes{scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
                             scene.mesh.growth};
-  meshes.background = pump_background(profile, sizes);
+  meshes.background = pump_background(profile, sizes, refinement_boxes(scene.problem));
   meshes.solids = {pump_membrane(profile, sizes), pump_magnet(profile, sizes)};
   if (meshes.clamp_radius == 0) meshes.clamp_radius = profile.membrane.clamp_radius;
   return meshes;

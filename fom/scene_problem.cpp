@@ -29,6 +29,13 @@ FsiProblem<2> problem_without_meshes(const Scene& scene) {
   return problem;
 }
 
+std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem) {
+  std::vector<RefinementBox<2>> boxes;
+  for (const auto& [name, box] : problem.refinements)
+    boxes.push_back({{box.box[0][0], box.box[0][1]}, {box.box[1][0], box.box[1][1]}, box.size});
+  return boxes;
+}
+
 double time_step(const Scene& scene) {
   if (scene.problem.stated) return scene.time.step;
   return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);

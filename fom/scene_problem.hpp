@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "fom/problem.hpp"
 #include "fom/scene/scene.hpp"
+#include "geometry/refinement_box.hpp"
 
 namespace undula {
 
@@ -14,6 +16,9 @@ FsiProblem<2> scene_problem(const Scene& scene);
 
 /// What every scene says alike of its problem: space, flow, fluid, interface and stabilisation.
 FsiProblem<2> problem_without_meshes(const Scene& scene);
+
+/// The boxes [refine.NAME] of a scene.
+std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem);
 
 /// Time step, s: one period / steps_per_period, or the one a stated scene names.
 double time_step(const Scene& scene);

@@ -80,7 +80,7 @@ public:
   void at_edge(const Point<2>& a, const Point<2>& b, double size) {
     if (size > 0) edges_.push_back({a, b, size});
   }
-  void in_box(const Point<2>& low, const Point<2>& high, double size) { boxes_.push_back({low, high, size}); }
+  void in_box(const RefinementBox<2>& box) { boxes_.push_back(box); }
 
   double operator()(const Point<2>& x) const {
     double size = largest_;
@@ -89,20 +89,18 @@ public:
       const double s = std::clamp((x - edge.a).dot(along) / along.squaredNorm(), 0.0, 1.0);
       size = std::min(size, edge.size + growth_ * (x - edge.a - s * along).norm());
     }
-    for (const auto& box : boxes_) {
-      const Point<2> nearest = x.cwiseMax(box.a).cwiseMin(box.b);
-      size = std::min(size, box.size + growth_ * (x - nearest).norm());
-    }
+    for (const auto& box : boxes_) size = std::min(size, size_about(box, growth_, x));
     return size;
   }
 
 private:
-  struct Sized {
-    Point<2> a, b; ///< ends of an edge, or corners of a box
+  struct SizedEdge {
+    Point<2> a, b;
     double size;
   };
   double largest_, growth_;
-  std::vector<Sized> edges_, boxes_;
+  std::vector<SizedEdge> edges_;
+  std::vector<RefinementBox<2>> boxes_;
 };
 
 int tag_of(std::vector<std::string>& names, const std::string& name) {
@@ -139,8 +137,7 @@ SimplexMesh<2> domain_mesh(const ProblemStatement& problem, bool axisymmetric) {
     if (body.shape.inner_radius > 0)
       size.at_edges(circle(body.shape.centre, body.shape.inner_radius, wanted), body.fluid_size);
   }
-  for (const auto& [name, box] : problem.refinements)
-    size.in_box(point_of(box.box[0]), point_of(box.box[1]), box.size);
+  for (const auto& box : refinement_boxes(problem)) size.in_box(box);
   return mesh_polygon(polygon, size, min_angle);
 }
 

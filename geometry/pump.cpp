@@ -24,13 +24,20 @@ double twice_area(const std::vector<Point<2>>& points) {
 
 } // namespace
 
-SimplexMesh<2> pump_background(const PumpProfile& profile, const PumpMeshSizes& sizes) {
+SimplexMesh<2> pump_background(const PumpProfile& profile, const PumpMeshSizes& sizes,
+                               std::span<const RefinementBox<2>> boxes) {
   const auto outline = fluid_outline(profile);
   TaggedPolygon polygon;
   polygon.points = outline.points;
   polygon.tags.assign(outline.curves.begin(), outline.curves.end());
   polygon.names = {"housing", "stator", "axis", "inlet", "outlet"}; // in the order of FluidOutline::Curve
-  return mesh_polygon(polygon, pump_size_field(profile, sizes), min_angle);
+  const auto by_gaps = pump_size_field(profile, sizes);
+  const auto size = [&](const Point<2>& x) {
+    double smallest = by_gaps(x);
+    for (const auto& box : boxes) smallest = std::min(smallest, size_about(box, sizes.growth, x));
+    return smallest;
+  };
+  return mesh_polygon(polygon, size, min_angle);
 }
 
 SimplexMesh<2> pump_membrane(const PumpProfile& profile, const PumpMeshSizes& sizes) {

@@ -201,7 +201,7 @@ std::vector<SceneKey> make_keys(const std::string& kind, const std::string& name
                      {}}}};
   for (SceneKey& key : keys) {
     key.path = kind + "." + name + (key.path.empty() ? "" : "." + key.path);
-    key.scope = Scope::stated;
+    key.scope = scope_of(kind);
   }
   return keys;
 }
@@ -218,7 +218,10 @@ std::span<const EntryKind> entry_kinds() {
        "Solids with meshes of their own, which the fluid's mesh need not know. They may reach out of the "
        "domain "
        "or into a hole: only what lies in the fluid counts there."},
-      {"refine", "Boxes in which the fluid's elements are small."},
+      {"refine",
+       "Boxes in which the fluid's elements are small, in scenes with a domain or a pump's profile. `--set "
+       "refine.NAME.box_mm=...` adds one.",
+       Scope::any},
       {"point",
        "Points that are followed: columns NAME_displacement_... of a body, NAME_pressure_mmHg and "
        "NAME_velocity_... of the fluid."},
@@ -228,6 +231,15 @@ std::span<const EntryKind> entry_kinds() {
        "depth) or NAME_force_z_mN (axisymmetric)."},
   }};
   return kinds;
+}
+
+Scope scope_of(std::string_view kind) {
+  for (const EntryKind& known : entry_kinds()) {
+    if (known.kind == kind) {
+      return known.scope;
+    }
+  }
+  return Scope::stated;
 }
 
 std::span<const SceneKey> entry_keys(const std::string& kind, const std::string& name) {

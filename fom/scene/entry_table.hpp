@@ -15,6 +15,7 @@ namespace undula {
 struct EntryKind {
   std::string kind; ///< "body": its sections are [body.NAME]
   std::string help;
+  Scope scope = Scope::stated; ///< scenes that may have them
 };
 
 /// All kinds, in the order of documentation.
@@ -23,6 +24,9 @@ std::span<const EntryKind> entry_kinds();
 /// The keys of one entry, with paths "kind.name.key". Accessors throw std::out_of_range for scenes without
 /// the entry.
 std::span<const SceneKey> entry_keys(const std::string& kind, const std::string& name);
+
+/// Scenes that may have entries of this kind, or constants.
+Scope scope_of(std::string_view kind);
 
 /// "body.flag.size_mm" or "body.flag" -> {"body", "flag"}; both empty where this names no entry.
 struct EntryName {

@@ -157,6 +157,7 @@ void check_training(const Scene& scene, const std::string& where) {
 } // namespace
 
 void check_consistency(const Scene& scene, const std::string& where) {
+  check_refinements(scene, where);
   if (scene.problem.stated) {
     check_statement(scene, where);
     check_contact(scene, where);

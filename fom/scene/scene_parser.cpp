@@ -102,6 +102,10 @@ public:
     }
     const std::string path = text.substr(0, equals);
     const std::string value = text.substr(equals + 1);
+    const EntryName entry = entry_of(path);
+    if (entry.kind == "refine" && is_plain_name(entry.name)) {
+      add_entry(scene, entry.kind, entry.name);
+    }
     check_entry_exists(scene, path, origin.label);
     const SceneKey* key = find_key(path);
     if (key == nullptr) {
@@ -175,7 +179,7 @@ private:
     for (const auto& [key, entry] : *node.as_table()) {
       const std::string name(key.str());
       const std::string at = origin.at(key.source());
-      if (!scene.problem.stated) {
+      if (!scene.problem.stated && scope_of(kind) != Scope::any) {
         throw InputError("section " + in_quotes(kind) + " makes no sense in a scene of a pump",
                          kind + "." + name, "scenes with [domain] or [body.NAME]", at);
       }

@@ -140,16 +140,24 @@ void check_observed(const ProblemStatement& problem, const std::string& where) {
                        "\"body\", the name of a body", at);
     }
   }
-  for (const auto& [name, box] : problem.refinements) {
-    if (box.box.size() != 2 || box.box[0][0] > box.box[1][0] || box.box[0][1] > box.box[1][1]) {
-      throw InputError("a box of refinement is not one", std::to_string(box.box.size()) + " points",
-                       "two points, the lowest and the highest corner",
-                       where + ", section [refine." + name + "]");
-    }
-  }
 }
 
 } // namespace
+
+void check_refinements(const Scene& scene, const std::string& where) {
+  for (const auto& [name, box] : scene.problem.refinements) {
+    const std::string at = where + ", section [refine." + name + "]";
+    if (box.box.size() != 2 || box.box[0][0] > box.box[1][0] || box.box[0][1] > box.box[1][1]) {
+      throw InputError("a box of refinement is not one", std::to_string(box.box.size()) + " points",
+                       "two points, the lowest and the highest corner", at);
+    }
+    if (!scene.problem.stated && (scene.profile.empty() || scene.space == Space::thin_gap)) {
+      throw InputError("there is no mesh to refine in a box",
+                       scene.profile.empty() ? "meshes from files" : "space = \"thin-gap\"",
+                       "scenes with \"geometry.profile\" or [domain] and finite elements", at);
+    }
+  }
+}
 
 std::set<std::string> boundary_names(const ProblemStatement& problem) {
   std::set<std::string> names(problem.domain.sides.begin(), problem.domain.sides.end());
