@@ -56,6 +56,17 @@ TEST(Scene, OverridesWinAndTheLastOneWinsOverAll) {
   EXPECT_DOUBLE_EQ(scene.stabilisation.ghost_viscous, 1);
 }
 
+TEST(Scene, AnOverrideAddsABoxOfRefinement) {
+  const Scene scene = with({"refine.tip.box_mm=[[4.0, -1.0], [6.0, 1.0]]", "refine.tip.size_mm=0.1"});
+  const auto& box = scene.problem.refinements.at("tip");
+  EXPECT_DOUBLE_EQ(box.size, 0.01);
+  EXPECT_DOUBLE_EQ(box.box.at(1).at(0), 0.6);
+  EXPECT_NE(scene_hash(scene), scene_hash(with({})));
+  const std::string text = scene_to_toml(scene);
+  EXPECT_EQ(scene_to_toml(parse_scene(text, "recorded", "/")), text);
+  EXPECT_THROW(with({"body.tip.size_mm=0.1"}), InputError);
+}
+
 TEST(Scene, TheResolvedSceneReadsBackBitForBit) {
   const Scene scene =
       with({"operating_point.stroke_mm=0.31415926535897931", "operating_point.head_mmHg=52.7182818",

@@ -96,6 +96,27 @@ TEST(Pump, WavePumpMeshIsSound) {
       }
 }
 
+TEST(Pump, BackgroundIsFineInBoxesAndAsBeforeFarFromThem) {
+  const RefinementBox<2> box{{0.4, -0.1}, {0.6, 0.1}, 0.006};
+  const auto plain = pump_background(wave_pump(), sizes),
+             fine = pump_background(wave_pump(), sizes, std::span(&box, 1));
+  const auto longest = [](const SimplexMesh<2>& mesh, const auto& counts) {
+    double length = 0;
+    for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell) {
+      Point<2> centre = Point<2>::Zero();
+      for (const int point : mesh.cells[cell]) centre += mesh.points[point] / 3;
+      if (counts(centre)) length = std::max(length, cell_diameter(mesh, static_cast<int>(cell)));
+    }
+    return length;
+  };
+  const auto inside = [&](const Point<2>& x) { return x == x.cwiseMax(box.low).cwiseMin(box.high); };
+  const auto far = [](const Point<2>& x) { return x[1] > 1; };
+  EXPECT_GT(longest(plain, inside), 0.02);
+  EXPECT_LT(longest(fine, inside), 0.008 + 1e-12); // 4/3 of the size
+  EXPECT_NEAR(longest(fine, far), longest(plain, far), 0.02);
+  EXPECT_NEAR(mesh_quality(fine).area, mesh_quality(plain).area, 1e-9);
+}
+
 // With no-slip on both walls such an edge would stop the flow in a P1 space.
 TEST(Pump, NoEdgeSpansAChannelFromWallToWall) {
   for (const double elements : {2.0, 3.0, 5.0}) {
