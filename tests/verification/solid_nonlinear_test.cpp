@@ -103,33 +103,40 @@ void expect_the_published_swing(int nx, int ny, double dt, double end) {
     ux.push_back(tip[0]);
     uy.push_back(tip[1]);
   }
-  // A swing goes from a highest point (the start, at rest, is the first) to the next.
-  const auto y = extrema(uy, dt);
+  // A swing goes from one fall through the middle to the next. Near its ends the second mode makes more than
+  // one extremum.
+  const double middle =
+      0.5 * (*std::min_element(uy.begin(), uy.end()) + *std::max_element(uy.begin(), uy.end()));
+  std::vector<std::size_t> falls;
+  std::vector<double> times;
+  for (std::size_t i = 1; i < uy.size(); ++i)
+    if (uy[i - 1] > middle && uy[i] <= middle) {
+      falls.push_back(i);
+      times.push_back(dt * (static_cast<double>(i) - (middle - uy[i]) / (uy[i - 1] - uy[i])));
+    }
   std::vector<double> x_low, x_high, y_low, y_high;
-  std::size_t from = 0;
-  for (const auto& top : y.maxima) {
-    const auto to = static_cast<std::size_t>(top.time / dt) + 1;
+  for (std::size_t n = 1; n < falls.size(); ++n) {
     const auto swing = [&](const std::vector<double>& signal) {
-      return extrema({signal.begin() + static_cast<std::ptrdiff_t>(from),
-                      signal.begin() + static_cast<std::ptrdiff_t>(std::min(to + 2, signal.size()))},
+      return extrema({signal.begin() + static_cast<std::ptrdiff_t>(falls[n - 1]),
+                      signal.begin() + static_cast<std::ptrdiff_t>(falls[n])},
                      dt);
     };
-    const auto by_value = [](const Extremum& a, const Extremum& b) { return a.value < b.value; };
-    const auto x = swing(ux), lows = swing(uy);
+    const auto by_value = [](const Extremum& one, const Extremum& other) { return one.value < other.value; };
+    const auto x = swing(ux), y = swing(uy);
+    for (const auto* points : {&x.minima, &x.maxima, &y.minima, &y.maxima}) ASSERT_FALSE(points->empty());
     x_low.push_back(std::min_element(x.minima.begin(), x.minima.end(), by_value)->value);
     x_high.push_back(std::max_element(x.maxima.begin(), x.maxima.end(), by_value)->value);
-    y_low.push_back(std::min_element(lows.minima.begin(), lows.minima.end(), by_value)->value);
-    y_high.push_back(top.value);
-    std::printf("  swing to %.4f s: ux %.3f .. %.3f mm, uy %.3f .. %.3f mm\n", top.time, 1e3 * x_low.back(),
+    y_low.push_back(std::min_element(y.minima.begin(), y.minima.end(), by_value)->value);
+    y_high.push_back(std::max_element(y.maxima.begin(), y.maxima.end(), by_value)->value);
+    std::printf("  swing to %.4f s: ux %.3f .. %.3f mm, uy %.3f .. %.3f mm\n", times[n], 1e3 * x_low.back(),
                 1e3 * x_high.back(), 1e3 * y_low.back(), 1e3 * y_high.back());
-    from = to;
   }
   ASSERT_GE(y_high.size(), 4u);
   const double mean_x = 0.5 * (average(x_high) + average(x_low)),
                amplitude_x = 0.5 * (average(x_high) - average(x_low));
   const double mean_y = 0.5 * (average(y_high) + average(y_low)),
                amplitude_y = 0.5 * (average(y_high) - average(y_low));
-  const double frequency = static_cast<double>(y_high.size()) / y.maxima.back().time;
+  const double frequency = static_cast<double>(y_high.size()) / (times.back() - times.front());
   std::printf(
       "CSM3, %d x %d, dt %.4f s, %.2f iterations per step: ux %.3f +- %.3f mm (%+.2f, %+.2f %%), uy "
       "%.3f +- %.3f mm (%+.2f, %+.2f %%), %.4f Hz (%+.2f %%)\n",
