@@ -52,8 +52,7 @@ Eigen::Matrix<double, dim, dim + 1> domain_velocity(const Discretisation<dim>& d
 template <int dim>
 SmallestVolume<dim> smallest_volume(const Discretisation<dim>& disc) {
   SmallestVolume<dim> smallest;
-  if (disc.cut.parts.empty()) smallest.ratio = std::numeric_limits<double>::infinity();
-  if (disc.cut.parts.empty() || disc.map.is_identity()) return smallest;
+  if (disc.map.is_identity() && !disc.cut.parts.empty()) return smallest;
   smallest.ratio = std::numeric_limits<double>::infinity();
   const bool hoop = disc.problem.space == Space::axisymmetric;
   const auto rule = reference_rule<dim>(1);

@@ -37,8 +37,8 @@ struct DomainExtension {
   std::array<Eigen::VectorXd, dim> reach; ///< by component, fluid nodes
 };
 
-/// Prepared once per cut. The displacement vanishes on walls and openings, its normal component on symmetric
-/// boundaries. Throws NumericsError if a factorisation fails.
+/// Prepared once per cut, of a domain at rest (no map). The displacement vanishes on walls and openings, its
+/// normal component on symmetric boundaries. Throws NumericsError if a factorisation fails.
 template <int dim>
 DomainExtension<dim> prepare_extension(const Discretisation<dim>& disc,
                                        const ExtensionSettings& settings = {});

@@ -1,7 +1,7 @@
 #include "fom/mapping/skin_elasticity.hpp"
 
-#include "fom/mapping/facet_jumps.hpp"
-#include "fom/mapping/weighted_laplace.hpp"
+#include "fom/assembly/facet_patch.hpp"
+#include "fom/mapping/map_penalties.hpp"
 
 namespace undula {
 
@@ -39,16 +39,18 @@ void add_medium(const Discretisation<dim>& disc, std::span<const PartGeometry<di
                                 w * ((c == d ? laplace : 0.0) + g(d, i) * g(c, j)));
       }
   }
-  for_each_facet_jump<dim>(disc, geometries, [&](const FacetJump<dim>& facet) {
-    const double weight = 2 * facet.area *
-                          ((facet.cut ? map_ghost_penalty * facet.size : 0.0) +
-                           smoothing_length * smoothing_length / facet.size);
-    for (std::size_t i = 0; i < facet.nodes.size(); ++i)
-      for (std::size_t j = 0; j < facet.nodes.size(); ++j)
+  for (const auto& connection : disc.cut.connections) {
+    const auto patch =
+        facet_patch(disc, connection, geometries[connection.part[0]], geometries[connection.part[1]]);
+    const double weight = 2 * patch.area *
+                          ((patch.cut ? map_ghost_penalty * patch.size : 0.0) +
+                           smoothing_length * smoothing_length / patch.size);
+    for (int i = 0; i < dim + 2; ++i)
+      for (int j = 0; j < dim + 2; ++j)
         for (int c = 0; c < dim; ++c)
-          matrix.emplace_back(facet.nodes[i] * dim + c, facet.nodes[j] * dim + c,
-                              weight * facet.jump[i] * facet.jump[j]);
-  });
+          matrix.emplace_back(patch.nodes[i] * dim + c, patch.nodes[j] * dim + c,
+                              weight * patch.normal_jump[i] * patch.normal_jump[j]);
+  }
 }
 
 template <int dim>

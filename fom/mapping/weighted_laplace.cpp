@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "fom/mapping/facet_jumps.hpp"
+#include "fom/assembly/facet_patch.hpp"
+#include "fom/mapping/map_penalties.hpp"
 
 namespace undula {
 
@@ -28,15 +29,17 @@ WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
     }
   }
 
-  for_each_facet_jump<dim>(disc, geometries, [&](const FacetJump<dim>& facet) {
-    if (!facet.cut) return;
-    const double conductance =
-        0.5 * (weights[facet.part[0]] + weights[facet.part[1]]) * facet.normal.cwiseAbs2().dot(axes);
-    const double weight = map_ghost_penalty * conductance * facet.size * facet.area;
-    for (std::size_t i = 0; i < facet.nodes.size(); ++i)
-      for (std::size_t j = 0; j < facet.nodes.size(); ++j)
-        matrix.emplace_back(facet.nodes[i], facet.nodes[j], weight * facet.jump[i] * facet.jump[j]);
-  });
+  for (const auto& connection : cut.connections) {
+    const int first = connection.part[0], second = connection.part[1];
+    if (!cut.parts[first].cut && !cut.parts[second].cut) continue;
+    const auto patch = facet_patch(disc, connection, geometries[first], geometries[second]);
+    const double conductance = 0.5 * (weights[first] + weights[second]) * patch.normal.cwiseAbs2().dot(axes);
+    const double weight = map_ghost_penalty * conductance * patch.size * patch.area;
+    for (int i = 0; i < dim + 2; ++i)
+      for (int j = 0; j < dim + 2; ++j)
+        matrix.emplace_back(patch.nodes[i], patch.nodes[j],
+                            weight * patch.normal_jump[i] * patch.normal_jump[j]);
+  }
 
   for (const auto& piece : cut.interface) {
     const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];

@@ -8,10 +8,6 @@
 
 namespace undula {
 
-// Nitsche's penalty, well above the trace constants of linear elements, and the ghost penalty, which bounds
-// those of cut ones.
-constexpr double map_skin_penalty = 20, map_ghost_penalty = 0.1;
-
 /// -div(K grad y) = 0 in the fluid at rest, K = weight * diag(axes) with one weight per part, y = 1 on the
 /// skin by Nitsche's method with ghost penalty, free on the boundary. Plain integrals: no factor r in
 /// axisymmetric space.

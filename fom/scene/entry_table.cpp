@@ -1,5 +1,6 @@
 #include "fom/scene/entry_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
@@ -201,7 +202,8 @@ std::vector<SceneKey> make_keys(const std::string& kind, const std::string& name
                      {}}}};
   for (SceneKey& key : keys) {
     key.path = kind + "." + name + (key.path.empty() ? "" : "." + key.path);
-    key.scope = scope_of(kind);
+    const EntryKind* known = find_entry_kind(kind);
+    key.scope = known != nullptr ? known->scope : Scope::stated;
   }
   return keys;
 }
@@ -221,7 +223,7 @@ std::span<const EntryKind> entry_kinds() {
       {"refine",
        "Boxes in which the fluid's elements are small, in scenes with a domain or a pump's profile. `--set "
        "refine.NAME.box_mm=...` adds one.",
-       Scope::any},
+       Scope::any, true},
       {"point",
        "Points that are followed: columns NAME_displacement_... of a body, NAME_pressure_mmHg and "
        "NAME_velocity_... of the fluid."},
@@ -233,13 +235,11 @@ std::span<const EntryKind> entry_kinds() {
   return kinds;
 }
 
-Scope scope_of(std::string_view kind) {
-  for (const EntryKind& known : entry_kinds()) {
-    if (known.kind == kind) {
-      return known.scope;
-    }
-  }
-  return Scope::stated;
+const EntryKind* find_entry_kind(std::string_view name) {
+  const auto kinds = entry_kinds();
+  const auto found =
+      std::find_if(kinds.begin(), kinds.end(), [&](const EntryKind& kind) { return kind.kind == name; });
+  return found == kinds.end() ? nullptr : &*found;
 }
 
 std::span<const SceneKey> entry_keys(const std::string& kind, const std::string& name) {
@@ -259,10 +259,8 @@ EntryName entry_of(std::string_view path) {
   }
   const std::string_view kind = path.substr(0, dot);
   const auto rest = path.substr(dot + 1);
-  for (const EntryKind& known : entry_kinds()) {
-    if (known.kind == kind) {
-      return {std::string(kind), std::string(rest.substr(0, rest.find('.')))};
-    }
+  if (find_entry_kind(kind) != nullptr) {
+    return {std::string(kind), std::string(rest.substr(0, rest.find('.')))};
   }
   return kind == constants_section ? EntryName{std::string(kind), std::string(rest)} : EntryName{};
 }

@@ -15,7 +15,8 @@ namespace undula {
 struct EntryKind {
   std::string kind; ///< "body": its sections are [body.NAME]
   std::string help;
-  Scope scope = Scope::stated; ///< scenes that may have them
+  Scope scope = Scope::stated;    ///< scenes that may have them
+  bool added_by_override = false; ///< `--set` makes those that the scene has not
 };
 
 /// All kinds, in the order of documentation.
@@ -25,8 +26,8 @@ std::span<const EntryKind> entry_kinds();
 /// the entry.
 std::span<const SceneKey> entry_keys(const std::string& kind, const std::string& name);
 
-/// Scenes that may have entries of this kind, or constants.
-Scope scope_of(std::string_view kind);
+/// Null for names of other sections, [constants] among them.
+const EntryKind* find_entry_kind(std::string_view name);
 
 /// "body.flag.size_mm" or "body.flag" -> {"body", "flag"}; both empty where this names no entry.
 struct EntryName {

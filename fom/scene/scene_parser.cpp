@@ -103,7 +103,8 @@ public:
     const std::string path = text.substr(0, equals);
     const std::string value = text.substr(equals + 1);
     const EntryName entry = entry_of(path);
-    if (entry.kind == "refine" && is_plain_name(entry.name)) {
+    const EntryKind* kind = find_entry_kind(entry.kind);
+    if (kind != nullptr && kind->added_by_override && is_plain_name(entry.name)) {
       add_entry(scene, entry.kind, entry.name);
     }
     check_entry_exists(scene, path, origin.label);
@@ -179,7 +180,7 @@ private:
     for (const auto& [key, entry] : *node.as_table()) {
       const std::string name(key.str());
       const std::string at = origin.at(key.source());
-      if (!scene.problem.stated && scope_of(kind) != Scope::any) {
+      if (!scene.problem.stated && (constants || find_entry_kind(kind)->scope == Scope::stated)) {
         throw InputError("section " + in_quotes(kind) + " makes no sense in a scene of a pump",
                          kind + "." + name, "scenes with [domain] or [body.NAME]", at);
       }

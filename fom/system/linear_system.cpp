@@ -274,7 +274,8 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
   if (reason < 0 && reuse && iteration > 1) {
-    // The solids have moved too far from where the factors were made.
+    // The solids have moved too far from where the factors were made. What GMRES left is no guess.
+    check_petsc(KSPSetInitialGuessNonzero(solver_.get(), PETSC_FALSE), "dropping the guess");
     check_petsc(KSPSetReusePreconditioner(solver_.get(), PETSC_FALSE), "factoring anew");
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
     check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");

@@ -73,7 +73,7 @@ TEST(SceneFlow, DISABLED_FlagBentByTheFlowAsShipped) {
   EXPECT_LT(std::abs(errors[3]), 0.01);
 }
 
-/// FSI2 on a mesh twice as coarse as shipped, up to two thirds of its full swing: the frequency, the drag as
+/// FSI2 on a mesh twice as coarse as shipped, up to half of its full swing: the frequency, the drag as
 /// the flag passes its middle (215.06 - 77.65 N/m of the full swing, and no less at half of it) and that the
 /// swing feeds on the flow.
 void flag_swings(const std::string& coupling) {
