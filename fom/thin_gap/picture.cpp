@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include "fom/thin_gap/step_equations.hpp"
+#include "fom/thin_gap/step.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
 
 namespace undula {

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "fom/pump_problem.hpp"
+#include "fom/thin_gap/step_energy.hpp"
 #include "fom/thin_gap/step_equations.hpp"
 #include "geometry/pump.hpp"
 

@@ -3,9 +3,10 @@
 
 #include <random>
 
+#include "fom/thin_gap/contact_law.hpp"
 #include "fom/thin_gap/gap_flow.hpp"
 #include "fom/thin_gap/plate.hpp"
-#include "fom/thin_gap/step_equations.hpp"
+#include "fom/thin_gap/step_energy.hpp"
 
 namespace undula {
 namespace {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "fom/thin_gap/contact_law.hpp"
 #include "fom/thin_gap/step_equations.hpp"
 
 namespace undula {
