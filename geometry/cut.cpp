@@ -9,80 +9,13 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "geometry/cut_cell.hpp"
+#include "geometry/cut_checks.hpp"
 #include "geometry/cut_reproducer.hpp"
+#include "geometry/exact_cells.hpp"
 #include "geometry/fluid_polygons.hpp"
 #include "geometry/small_polygons.hpp"
 
 namespace undula {
-namespace {
-
-constexpr double closure_tolerance = 1e-10; // relative, beyond it an element has failed
-
-// Measure and unit normal, outward from the first cell, of every facet.
-template <int dim>
-struct FacetShape {
-  Point<dim> outward;
-  double measure;
-};
-
-template <int dim>
-std::vector<FacetShape<dim>> facet_shapes(const SimplexMesh<dim>& mesh, const FacetTable<dim>& table) {
-  std::vector<FacetShape<dim>> shapes;
-  for (const auto& facet : table.facets) {
-    const Point<dim> gradient = barycentric_gradients(mesh, facet.cells[0]).col(facet.local[0]);
-    // |grad lambda| is one over the height, and the cell is facet times height / dim.
-    const double measure = std::abs(cell_measure(mesh, facet.cells[0])) * dim * gradient.norm();
-    shapes.push_back({-gradient.normalized(), measure});
-  }
-  return shapes;
-}
-
-template <int dim>
-std::vector<FacetTable<dim>> facet_tables(std::span<const SimplexMesh<dim>> meshes) {
-  std::vector<FacetTable<dim>> tables;
-  for (const auto& mesh : meshes) tables.push_back(build_facet_table(mesh));
-  return tables;
-}
-
-} // namespace
-
-template <int dim>
-struct BackgroundCutter<dim>::Setup {
-  Setup(SimplexMesh<dim> background, std::span<const SimplexMesh<dim>> solids, const CutOptions& cut_options)
-      : mesh(std::move(background)),
-        facets(build_facet_table(mesh)),
-        options(cut_options),
-        shapes(facet_shapes(mesh, facets)),
-        volume_rule(reference_rule<dim>(options.volume_degree)),
-        interface_rule(reference_rule<dim - 1>(options.interface_degree)),
-        boundary_rule(reference_rule<dim - 1>(options.boundary_degree)),
-        solid_facets(facet_tables(solids)) {
-    for (const auto& solid : solids) {
-      solid_points.push_back(solid.points.size());
-      solid_cells.push_back(solid.cells);
-    }
-    if constexpr (dim == 2) {
-      index.emplace(mesh, facets);
-      skin = build_solid_skin(solids, solid_facets);
-    }
-  }
-  Setup(const Setup&) = delete; // the index looks into the mesh
-
-  SimplexMesh<dim> mesh;
-  FacetTable<dim> facets;
-  CutOptions options;
-  std::vector<FacetShape<dim>> shapes; // by facet
-  ReferenceRule<dim> volume_rule;
-  ReferenceRule<dim - 1> interface_rule;
-  ReferenceRule<dim - 1> boundary_rule;
-  std::vector<FacetTable<dim>> solid_facets;
-  std::vector<std::size_t> solid_points;
-  std::vector<std::vector<std::array<int, dim + 1>>> solid_cells;
-  std::optional<BackgroundIndex> index; // 2D
-  SolidSkin skin;                       // 2D
-};
-
 namespace {
 
 template <int dim>
@@ -95,7 +28,7 @@ public:
         solids_(solids),
         options_(setup.options),
         filtered_(dim == 2 && !setup.options.exact),
-        near_index_(setup.mesh.cells.size(), -1) {
+        exact_(setup, solids) {
     cut_.mesh = setup.mesh;
     cut_.facets = setup.facets;
   }
@@ -105,7 +38,7 @@ public:
     find_near_cells();
     cut_.cell_parts.push_back(0);
     for (int cell = 0; cell < static_cast<int>(cut_.mesh.cells.size()); ++cell) {
-      if (near_index_[cell] >= 0 || !add_filtered_parts(cell)) add_exact_parts(cell);
+      if (exact_.has(cell) || !add_filtered_parts(cell)) add_exact_parts(cell);
       cut_.cell_parts.push_back(static_cast<int>(cut_.parts.size()));
     }
     for (int facet = 0; facet < static_cast<int>(cut_.facets.facets.size()); ++facet) {
@@ -115,46 +48,14 @@ public:
       else
         inner ? connect(facet) : add_boundary(facet);
     }
-    check_closure();
-    cut_.exact_cells = static_cast<int>(near_.size());
+    if (const auto open = first_open_cell(cut_, setup_, closed_cells_))
+      fail(*open, exact_.near_solid_cells(*open),
+           "a fluid part of an element is not closed (do solids overlap?)");
+    cut_.exact_cells = exact_.count();
     return std::move(cut_);
   }
 
 private:
-  // A trace of a fluid part on a facet of its cell, convex.
-  struct Trace {
-    int part;
-    Polytope<dim> shape;
-  };
-  // A cell near a solid that is cut in exact arithmetic.
-  struct NearCell {
-    int cell;
-    std::vector<SolidCell> solid_cells;
-    CellCut<dim> shape;
-    std::array<std::vector<Trace>, dim + 1> traces; // by opposite vertex; parts of the cell, from 0
-  };
-
-  HyperplaneTable<dim> hyperplanes() const {
-    std::vector<const SimplexMesh<dim>*> meshes{&setup_.mesh};
-    std::vector<const FacetTable<dim>*> facets{&setup_.facets};
-    for (std::size_t s = 0; s < solids_.size(); ++s) {
-      meshes.push_back(&solids_[s]);
-      facets.push_back(&setup_.solid_facets[s]);
-    }
-    return HyperplaneTable<dim>(std::move(meshes), std::move(facets));
-  }
-
-  std::vector<Box<dim>> solid_boxes() {
-    std::vector<Box<dim>> boxes;
-    for (int s = 0; s < static_cast<int>(solids_.size()); ++s) {
-      for (int c = 0; c < static_cast<int>(solids_[s].cells.size()); ++c) {
-        all_solid_cells_.push_back({s, c});
-        boxes.push_back(cell_box(solids_[s], c));
-      }
-    }
-    return boxes;
-  }
-
   void find_near_cells() {
     const int cells = static_cast<int>(cut_.mesh.cells.size());
     if constexpr (dim == 2) {
@@ -172,41 +73,22 @@ private:
       }
     }
     for (int cell = 0; cell < cells; ++cell)
-      if (!near_solid_cells(cell).empty()) cut_exactly(cell);
-  }
-
-  std::vector<SolidCell> near_solid_cells(int cell) {
-    if (!grid_) grid_.emplace(solid_boxes());
-    std::vector<SolidCell> near;
-    for (const int i : grid_->touching(cell_box(cut_.mesh, cell))) near.push_back(all_solid_cells_[i]);
-    return near;
-  }
-
-  const HyperplaneTable<dim>& table() {
-    if (!table_) table_.emplace(hyperplanes());
-    return *table_;
+      if (!exact_.near_solid_cells(cell).empty()) cut_exactly(cell);
   }
 
   void cut_exactly(int cell) {
-    auto near = near_solid_cells(cell);
-    auto shape = cut_cell(table(), cell, std::span<const SolidCell>(near));
-    near_index_[cell] = static_cast<int>(near_.size());
-    auto& record = near_.emplace_back(NearCell{cell, std::move(near), std::move(shape), {}});
-    for (std::size_t i = 0; i < record.shape.pieces.size(); ++i)
-      for (int v = 0; v <= dim; ++v)
-        if (auto trace = facet_in(record.shape.pieces[i], table().plane(0, cut_.facets.cell_facets[cell][v])))
-          record.traces[v].push_back({record.shape.part_of_piece[i], std::move(*trace)});
+    exact_.cut(cell);
     closed_cells_.push_back(cell);
   }
 
   void add_whole(int cell) { cut_.parts.push_back({cell, false, cell_measure(cut_.mesh, cell)}); }
 
   void add_exact_parts(int cell) {
-    if (near_index_[cell] < 0) {
+    if (!exact_.has(cell)) {
       if (!filtered_) return add_whole(cell);
       cut_exactly(cell);
     }
-    const auto& near = near_[near_index_[cell]];
+    const auto& near = exact_.at(cell);
     const auto& shape = near.shape;
     const int first = static_cast<int>(cut_.parts.size());
     const bool is_cut = !shape.removed.empty();
@@ -218,7 +100,10 @@ private:
       cut_.parts.push_back({cell, true});
       add_volume(shape, part, cut_.parts.back());
     }
-    check_sum(near, first);
+    double sum = 0;
+    for (std::size_t part = first; part < cut_.parts.size(); ++part) sum += cut_.parts[part].measure;
+    if (const auto error = error_of_sum(near, sum, setup_, solids_, exact_.table()); !error.empty())
+      fail(cell, near.solid_cells, error);
     for (std::size_t i = 0; i < shape.pieces.size(); ++i)
       add_interface(shape.pieces[i], first + shape.part_of_piece[i]);
   }
@@ -290,7 +175,7 @@ private:
 
   bool both_exact(int facet) const {
     const auto& cells = cut_.facets.facets[facet].cells;
-    return near_index_[cells[0]] >= 0 && (cells[1] < 0 || near_index_[cells[1]] >= 0);
+    return exact_.has(cells[0]) && (cells[1] < 0 || exact_.has(cells[1]));
   }
 
   // First of the stretches of a facet, the pieces between its crossings from low to high.
@@ -346,18 +231,17 @@ private:
           continue;
         }
         for (int k : {0, 1})
-          if (const int cell = cut_.facets.facets[facet].cells[k]; cell >= 0 && near_index_[cell] >= 0)
-            set(index.low(facet),
-                !near_[near_index_[cell]].traces[cut_.facets.facets[facet].local[k]].empty(), facet);
+          if (const int cell = cut_.facets.facets[facet].cells[k]; cell >= 0 && exact_.has(cell))
+            set(index.low(facet), !exact_.at(cell).traces[cut_.facets.facets[facet].local[k]].empty(), facet);
       }
       spread();
       // What no skin reaches is all fluid or all solid.
       for (int cell = 0; cell < static_cast<int>(cut_.mesh.cells.size()); ++cell) {
-        if (near_index_[cell] >= 0 || trace_.first_chain[cell] >= 0) continue;
+        if (exact_.has(cell) || trace_.first_chain[cell] >= 0) continue;
         if (side_of_point_[cut_.mesh.cells[cell][0]] != Side::unknown) continue;
-        const auto near = near_solid_cells(cell);
+        const auto near = exact_.near_solid_cells(cell);
         const bool fluid =
-            near.empty() || cut_cell(table(), cell, std::span<const SolidCell>(near)).part_count > 0;
+            near.empty() || cut_cell(exact_.table(), cell, std::span<const SolidCell>(near)).part_count > 0;
         set(cut_.mesh.cells[cell][0], fluid, cut_.facets.cell_facets[cell][2]);
         spread();
       }
@@ -383,21 +267,21 @@ private:
 
   void add_interface(const Polytope<dim>& piece, int part) {
     for (const auto& side : piece.sides) {
-      const auto [mesh, index] = table_->origin(side.plane);
+      const auto [mesh, index] = exact_.table().origin(side.plane);
       if (mesh == 0 || side.positive) continue; // hyperplanes point into the first cell of their facet
-      const auto& facet = table_->facets(mesh).facets[index];
+      const auto& facet = exact_.table().facets(mesh).facets[index];
       if (facet.cells[1] >= 0) continue;
       auto contact = facet_in(piece, side.plane);
       if (!contact) continue;
       std::vector<HalfSpace> extent;
-      for (const auto& solid_side : table_->sides(mesh, facet.cells[0]))
+      for (const auto& solid_side : exact_.table().sides(mesh, facet.cells[0]))
         if (solid_side.plane != side.plane) extent.push_back(solid_side);
-      contact = intersect<dim>(std::move(*contact), extent, *table_);
+      contact = intersect<dim>(std::move(*contact), extent, exact_.table());
       if (!contact) continue;
       InterfacePiece<dim> record{part, mesh - 1, facet.cells[0], {}, 0, 0};
       // The barycentric coordinate of the opposite vertex rises into the solid.
       record.normal =
-          barycentric_gradients(table_->mesh(mesh), facet.cells[0]).col(facet.local[0]).normalized();
+          barycentric_gradients(exact_.table().mesh(mesh), facet.cells[0]).col(facet.local[0]).normalized();
       std::tie(record.quadrature_begin, record.quadrature_end) =
           add_facet_quadrature({*contact}, setup_.interface_rule, cut_.interface_quadrature);
       cut_.interface.push_back(record);
@@ -427,10 +311,10 @@ private:
   }
 
   // Traces of a cell on its facet; null for a cell whose one part covers the facet whole.
-  const std::vector<Trace>* traces(int cell, int local) const {
+  const std::vector<FacetTrace<dim>>* traces(int cell, int local) const {
     const bool whole =
         cut_.cell_parts[cell + 1] - cut_.cell_parts[cell] == 1 && !cut_.parts[cut_.cell_parts[cell]].cut;
-    return whole ? nullptr : &near_[near_index_[cell]].traces[local];
+    return whole ? nullptr : &exact_.at(cell).traces[local];
   }
 
   /// Adds `measure` to what two parts share of a facet, whose connections start at `begin`.
@@ -446,8 +330,8 @@ private:
 
   void connect(int index) {
     const auto& facet = cut_.facets.facets[index];
-    const std::vector<Trace>* sides[2] = {traces(facet.cells[0], facet.local[0]),
-                                          traces(facet.cells[1], facet.local[1])};
+    const std::vector<FacetTrace<dim>>* sides[2] = {traces(facet.cells[0], facet.local[0]),
+                                                    traces(facet.cells[1], facet.local[1])};
     const int first_part[2] = {cut_.cell_parts[facet.cells[0]], cut_.cell_parts[facet.cells[1]]};
     const std::size_t begin = cut_.connections.size();
     const auto add = [&](int part_0, int part_1, double measure) {
@@ -464,7 +348,7 @@ private:
     } else {
       for (const auto& a : *sides[0])
         for (const auto& b : *sides[1])
-          if (const auto shared = intersect<dim>(a.shape, b.shape.sides, *table_))
+          if (const auto shared = intersect<dim>(a.shape, b.shape.sides, exact_.table()))
             add(first_part[0] + a.part, first_part[1] + b.part, measure_of(*shared));
     }
   }
@@ -473,7 +357,7 @@ private:
   std::vector<int> parts_on_stretches(int facet, int k) const {
     const int count = trace_.count(facet) + 1;
     const int cell = cut_.facets.facets[facet].cells[k];
-    if (near_index_[cell] < 0) {
+    if (!exact_.has(cell)) {
       const auto begin = stretch_parts_[k].begin() + first_stretch(facet);
       return {begin, begin + count};
     }
@@ -488,7 +372,7 @@ private:
         int part;
       };
       std::vector<Run> runs;
-      for (const auto& trace : near_[near_index_[cell]].traces[cut_.facets.facets[facet].local[k]]) {
+      for (const auto& trace : exact_.at(cell).traces[cut_.facets.facets[facet].local[k]]) {
         Exact a = trace.shape.vertices[0].x[axis], b = trace.shape.vertices[1].x[axis];
         if (!rising) {
           a = -a;
@@ -526,7 +410,7 @@ private:
       add_connection(begin, facet, {part_0, part_1}, measure);
     };
     const auto& cells = cut_.facets.facets[facet].cells;
-    if (near_index_[cells[0]] < 0 && near_index_[cells[1]] < 0) {
+    if (!exact_.has(cells[0]) && !exact_.has(cells[1])) {
       for (int i = 0; i <= trace_.count(facet); ++i) {
         const int stretch = first_stretch(facet) + i;
         const int a = stretch_parts_[0][stretch], b = stretch_parts_[1][stretch];
@@ -568,10 +452,10 @@ private:
     auto& quadrature = cut_.boundary_quadrature;
     for (int part = cut_.cell_parts[cell]; part < cut_.cell_parts[cell + 1]; ++part) {
       BoundaryPiece piece{index, part, facet.boundary_tag, static_cast<int>(quadrature.weights.size()), 0};
-      if (near_index_[cell] < 0) {
+      if (!exact_.has(cell)) {
         append_simplex_quadrature<dim, dim - 1>(setup_.boundary_rule, facet_points(index), quadrature);
       } else {
-        const auto& near = near_[near_index_[cell]];
+        const auto& near = exact_.at(cell);
         std::vector<Polytope<dim>> wet;
         for (const auto& trace : near.traces[facet.local[0]])
           if (cut_.cell_parts[cell] + trace.part == part) wet.push_back(trace.shape);
@@ -583,79 +467,19 @@ private:
   }
 
   // Where a solid lies against the boundary from outside, the fluid meets its skin and not the boundary.
-  std::vector<Polytope<dim>> uncovered(std::vector<Polytope<dim>> shapes, const NearCell& near) const {
+  std::vector<Polytope<dim>> uncovered(std::vector<Polytope<dim>> shapes, const ExactCell<dim>& near) {
     for (const auto& solid : near.solid_cells) {
-      const auto sides = table_->sides(mesh_of_solid(solid.solid), solid.cell);
+      const auto sides = exact_.table().sides(mesh_of_solid(solid.solid), solid.cell);
       std::vector<Polytope<dim>> rest;
       for (const auto& shape : shapes)
-        for (auto& piece : subtract(shape, sides, *table_)) rest.push_back(std::move(piece));
+        for (auto& piece : subtract(shape, sides, exact_.table())) rest.push_back(std::move(piece));
       shapes = std::move(rest);
     }
     return shapes;
   }
 
-  double measure_of_solid(const Polytope<dim>& shape) const {
-    QuadratureSet<dim> set;
-    for (const auto& simplex : triangulate<dim, dim>(shape))
-      append_simplex_quadrature<dim, dim>(setup_.volume_rule, simplex, set);
-    return std::accumulate(set.weights.begin(), set.weights.end(), 0.0);
-  }
-
-  static std::array<Point<dim>, dim + 1> corners(const SimplexMesh<dim>& mesh, int cell) {
-    std::array<Point<dim>, dim + 1> points;
-    for (int v = 0; v <= dim; ++v) points[v] = mesh.points[mesh.cells[cell][v]];
-    return points;
-  }
-
-  // Sum of the parts + solid = element, and the solid is the sum of its cells.
-  void check_sum(const NearCell& near, int first) {
-    const double element = std::abs(cell_measure(cut_.mesh, near.cell));
-    double sum = 0, solid = 0, solid_cells = 0;
-    for (std::size_t part = first; part < cut_.parts.size(); ++part) sum += cut_.parts[part].measure;
-    for (const auto& removed : near.shape.removed) solid += measure_of_solid(removed);
-    if (!(std::abs(sum + solid - element) <= closure_tolerance * element))
-      fail(near.cell, near.solid_cells,
-           "the parts of an element and its solid part do not add up to the element");
-    if (near.shape.removed.empty()) return;
-    for (const auto& cell : near.solid_cells) {
-      if constexpr (dim == 2) {
-        solid_cells += overlap_area(corners(cut_.mesh, near.cell), corners(solids_[cell.solid], cell.cell));
-      } else {
-        const auto sides = table_->sides(mesh_of_solid(cell.solid), cell.cell);
-        if (const auto overlap = intersect<dim>(cell_polytope(*table_, 0, near.cell), sides, *table_))
-          solid_cells += measure_of_solid(*overlap);
-      }
-    }
-    if (!(std::abs(solid_cells - solid) <= closure_tolerance * element))
-      fail(near.cell, near.solid_cells, "solids overlap");
-  }
-
-  // Integral of the outward normal over the boundary of each part of the cells near solids: 0.
-  void check_closure() {
-    std::vector<Point<dim>> sum(cut_.parts.size(), Point<dim>::Zero());
-    const auto total = [](const QuadratureSet<dim>& set, const auto& piece) {
-      return std::accumulate(set.weights.begin() + piece.quadrature_begin,
-                             set.weights.begin() + piece.quadrature_end, 0.0);
-    };
-    for (const auto& piece : cut_.interface)
-      sum[piece.part] += total(cut_.interface_quadrature, piece) * piece.normal;
-    for (const auto& piece : cut_.boundary)
-      sum[piece.part] += total(cut_.boundary_quadrature, piece) * setup_.shapes[piece.facet].outward;
-    for (const auto& connection : cut_.connections) {
-      const Point<dim> flux = connection.measure * setup_.shapes[connection.facet].outward;
-      sum[connection.part[0]] += flux;
-      sum[connection.part[1]] -= flux;
-    }
-    for (const int cell : closed_cells_) {
-      const double scale = std::pow(cell_diameter(cut_.mesh, cell), dim - 1);
-      for (int part = cut_.cell_parts[cell]; part < cut_.cell_parts[cell + 1]; ++part)
-        if (!(sum[part].norm() <= closure_tolerance * scale))
-          fail(cell, near_solid_cells(cell), "a fluid part of an element is not closed (do solids overlap?)");
-    }
-  }
-
   [[noreturn]] void fail_overlap(int cell) {
-    fail(cell, near_solid_cells(cell), "the skins of solids do not part fluid from solid");
+    fail(cell, exact_.near_solid_cells(cell), "the skins of solids do not part fluid from solid");
   }
 
   [[noreturn]] void fail(int cell, std::span<const SolidCell> solid_cells, const std::string& what) const {
@@ -675,12 +499,7 @@ private:
   bool filtered_;                 // cells that can be are cut in floating point
   std::vector<int> closed_cells_; // cells whose parts have to be closed
 
-  // Exact arithmetic, made on first use.
-  std::optional<HyperplaneTable<dim>> table_;
-  std::vector<SolidCell> all_solid_cells_; // in the order of the boxes of the grid
-  std::optional<BoxGrid<dim>> grid_;
-  std::vector<int> near_index_; // [cell] -> index into near_, -1 if it is not cut in exact arithmetic
-  std::vector<NearCell> near_;
+  ExactCells<dim> exact_;
 
   // Floating point.
   std::vector<PlacedSegment> placed_;

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "base/error.hpp"
@@ -83,6 +84,13 @@ double cell_measure(const SimplexMesh<dim>& mesh, int cell) {
 }
 
 template <int dim>
+double facet_measure(const SimplexMesh<dim>& mesh, const Facet<dim>& facet) {
+  // |grad lambda| is one over the height, and the cell is facet times height / dim.
+  const double slope = barycentric_gradients(mesh, facet.cells[0]).col(facet.local[0]).norm();
+  return std::abs(cell_measure(mesh, facet.cells[0])) * dim * slope;
+}
+
+template <int dim>
 double cell_diameter(const SimplexMesh<dim>& mesh, int cell) {
   double longest = 0;
   for (const int a : mesh.cells[cell])
@@ -112,6 +120,7 @@ Eigen::Matrix<double, dim + 1, 1> barycentric_coordinates(const SimplexMesh<dim>
 #define UNDULA_INSTANTIATE(dim)                                                                          \
   template FacetTable<dim> build_facet_table<dim>(const SimplexMesh<dim>&);                              \
   template double cell_measure<dim>(const SimplexMesh<dim>&, int);                                       \
+  template double facet_measure(const SimplexMesh<dim>&, const Facet<dim>&);                             \
   template double cell_diameter<dim>(const SimplexMesh<dim>&, int);                                      \
   template Eigen::Matrix<double, dim, dim + 1> barycentric_gradients<dim>(const SimplexMesh<dim>&, int); \
   template Eigen::Matrix<double, dim + 1, 1> barycentric_coordinates<dim>(const SimplexMesh<dim>&, int,  \

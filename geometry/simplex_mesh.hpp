@@ -54,6 +54,10 @@ FacetTable<dim> build_facet_table(const SimplexMesh<dim>& mesh);
 template <int dim>
 double cell_measure(const SimplexMesh<dim>& mesh, int cell);
 
+/// Measure of a facet, cm^(dim - 1).
+template <int dim>
+double facet_measure(const SimplexMesh<dim>& mesh, const Facet<dim>& facet);
+
 /// Diameter of a cell: its longest edge, cm.
 template <int dim>
 double cell_diameter(const SimplexMesh<dim>& mesh, int cell);

@@ -41,9 +41,7 @@ double mean_thickness(const Discretisation<dim>& disc) {
     for (std::size_t cell = 0; cell < body.mesh.cells.size(); ++cell)
       volume += cell_measure(body.mesh, static_cast<int>(cell));
     for (const auto& facet : build_facet_table(body.mesh).facets)
-      if (facet.cells[1] < 0)
-        skin += dim * cell_measure(body.mesh, facet.cells[0]) *
-                barycentric_gradients(body.mesh, facet.cells[0]).col(facet.local[0]).norm();
+      if (facet.cells[1] < 0) skin += facet_measure(body.mesh, facet);
   }
   return skin > 0 ? 2 * volume / skin : 0.0;
 }
