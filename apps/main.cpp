@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "apps/commands.hpp"
-#include "base/error.hpp"
+#include "apps/commands/commands.hpp"
+#include "rom/base/error.hpp"
 
 namespace {
 
@@ -29,13 +29,13 @@ int main(int argc, char** argv) {
   // 2. The command line.
   CLI::App app("Undula predicts the head-flow curve of a wave-membrane blood pump.", "undula");
   app.require_subcommand(1);
-  undula::add_check_command(app);
-  undula::add_solve_command(app);
-  undula::add_train_command(app);
-  undula::add_hq_command(app);
-  undula::add_validate_command(app);
-  undula::add_calibrate_command(app);
-  undula::add_report_command(app);
+  undula::apps::add_check_command(app);
+  undula::apps::add_solve_command(app);
+  undula::apps::add_train_command(app);
+  undula::apps::add_hq_command(app);
+  undula::apps::add_validate_command(app);
+  undula::apps::add_calibrate_command(app);
+  undula::apps::add_report_command(app);
 
   // 3. Run; every failure becomes one message and an exit code.
   try {

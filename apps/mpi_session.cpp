@@ -5,11 +5,12 @@
 
 #include <CLI/Error.hpp>
 
-#include "base/error.hpp"
-#include "fom/petsc/blas_threads.hpp"
-#include "fom/petsc/handles.hpp"
+#include "apps/apps.hpp"
+#include "fom/system/blas_threads.hpp"
+#include "fom/system/handles.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 class Session {
@@ -61,4 +62,4 @@ void run_parallel(const std::vector<std::string>& petsc_options, const std::func
   }
 }
 
-} // namespace undula
+} // namespace undula::apps

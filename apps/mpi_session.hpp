@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace undula {
+namespace undula::apps {
 
 /// Initialises MPI, PETSc and SLEPc with `petsc_options` ("-log_view", "-fsi_ksp_monitor", ...), runs `work`
 /// on every rank and finalises. `work` has to fail on all ranks or on none; rank 0 then throws what it threw,
@@ -15,4 +15,4 @@ namespace undula {
 /// ranks are off. Throws InputError if the options do not begin with a "-".
 void run_parallel(const std::vector<std::string>& petsc_options, const std::function<void(MPI_Comm)>& work);
 
-} // namespace undula
+} // namespace undula::apps

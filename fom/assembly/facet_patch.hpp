@@ -6,7 +6,7 @@
 
 #include "fom/assembly/part_geometry.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Linear forms on the nodes of both parts: those of the first part in its order, then the one of the second
 /// part off the facet. Connected parts share the nodes of their facet.
@@ -62,4 +62,4 @@ FacetPatch<dim> facet_patch(const Discretisation<dim>& disc, const FacetConnecti
   return patch;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,7 +1,7 @@
 #include "fom/assembly/forms.hpp"
 #include "fom/assembly/part_quadrature.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 // P1 fields times P1 fields times r, and the smooth hoop term 1/r away from the axis.
@@ -154,4 +154,4 @@ template Eigen::Matrix3d part_convection<2>(double, const Eigen::Matrix3d&,
 template Eigen::VectorXd opening_functional(const Discretisation<2>&, const Share&, const std::string&);
 template Eigen::VectorXd body_force_load(const Discretisation<2>&, const Share&, double);
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,7 +5,7 @@
 #include "fom/assembly/part_geometry.hpp"
 #include "fom/assembly/sparse.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Which parts and cells a rank integrates: those whose first node it owns.
 struct Share {
@@ -96,4 +96,4 @@ Eigen::VectorXd body_force_load(const Discretisation<dim>& disc, const Share& sh
 /// phi = mu + rho (U h + h^2 / tau), see StabilisationWeights. g/(cm s).
 double phi_weight(const StabilisationWeights& weights, const FluidProperties& fluid, double h);
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,6 +1,6 @@
 #include "fom/assembly/forms.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 template <int dim>
 void add_interface(const Discretisation<dim>& disc, const Share& share,
@@ -93,4 +93,4 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
 template void add_interface(const Discretisation<2>&, const Share&, std::span<const PartGeometry<2>>,
                             Triplets&, Triplets&);
 
-} // namespace undula
+} // namespace undula::fom

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -186,4 +186,4 @@ template SolidResponse<2> solid_response(const Discretisation<2>&, const std::ve
 template void add_tangent_product(const Discretisation<2>&, const std::vector<SolidCell>&,
                                   const SolidResponse<2>&, const Eigen::VectorXd&, bool, Eigen::VectorXd&);
 
-} // namespace undula
+} // namespace undula::fom

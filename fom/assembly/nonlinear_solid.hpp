@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "fom/assembly/forms.hpp"
-#include "fom/assembly/solid_laws.hpp"
+#include "fom/materials/solid_laws.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 inline bool is_nonlinear(SolidModel model) {
   return model == SolidModel::saint_venant_kirchhoff || model == SolidModel::neo_hookean;
@@ -16,10 +16,6 @@ inline bool is_nonlinear(SolidModel model) {
 /// Whether any solid has a nonlinear law. The same on every rank.
 template <int dim>
 bool has_nonlinear_solid(const Discretisation<dim>& disc);
-
-struct SolidCell {
-  int solid = -1, cell = -1;
-};
 
 /// The cells of the share that belong to solids with a nonlinear law.
 template <int dim>
@@ -78,4 +74,4 @@ void add_tangent_product(const Discretisation<dim>& disc, const std::vector<Soli
                          const SolidResponse<dim>& response, const Eigen::VectorXd& x, bool absolute,
                          Eigen::VectorXd& sum);
 
-} // namespace undula
+} // namespace undula::fom

@@ -6,7 +6,7 @@
 
 #include "fom/assembly/part_quadrature.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 template <int dim>
 PartGeometry<dim> part_geometry(const Discretisation<dim>& disc, int part) {
@@ -84,4 +84,4 @@ template std::vector<PartGeometry<2>> part_geometries(const Discretisation<2>&);
 template Eigen::Matrix<double, 2, 3> domain_velocity(const Discretisation<2>&, int);
 template SmallestVolume<2> smallest_volume(const Discretisation<2>&);
 
-} // namespace undula
+} // namespace undula::fom

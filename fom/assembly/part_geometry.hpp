@@ -8,7 +8,7 @@
 
 #include "fom/space/discretisation.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 template <int dim>
 struct PartGeometry {
@@ -57,4 +57,4 @@ double smallest_volume_ratio(const Discretisation<dim>& disc) {
   return smallest_volume(disc).ratio;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -3,7 +3,7 @@
 
 #include "fom/assembly/part_geometry.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Calls f(lambda, place, weight) over part `part` at rest, without the measure; uncut parts use `rule` on
 /// the whole element.
@@ -39,4 +39,4 @@ void for_each_point(const Discretisation<dim>& disc, int part, const PartGeometr
   });
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,7 +1,7 @@
 #include "fom/assembly/forms.hpp"
-#include "fom/assembly/solid_laws.hpp"
+#include "fom/materials/solid_laws.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -103,4 +103,4 @@ void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share, co
 template void add_solid_mass(const Discretisation<2>&, const Share&, const SolidFactor<2>&, Triplets&);
 template void add_solid_stiffness(const Discretisation<2>&, const Share&, const SolidFactor<2>&, Triplets&);
 
-} // namespace undula
+} // namespace undula::fom

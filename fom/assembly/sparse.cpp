@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace undula {
+namespace undula::fom {
 
 SparseMatrix compress(int size, const Triplets& triplets) {
   // Entries by row, in their order; then row by row through an array of places by column. A step with a new
@@ -42,4 +42,4 @@ SparseMatrix compress(int size, const Triplets& triplets) {
                                         inner.data(), values.data());
 }
 
-} // namespace undula
+} // namespace undula::fom

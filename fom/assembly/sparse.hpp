@@ -4,7 +4,7 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-namespace undula {
+namespace undula::fom {
 
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
@@ -13,4 +13,4 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 /// zero stay in the pattern.
 SparseMatrix compress(int size, const Triplets& triplets);
 
-} // namespace undula
+} // namespace undula::fom

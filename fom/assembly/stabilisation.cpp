@@ -1,7 +1,7 @@
 #include "fom/assembly/facet_patch.hpp"
 #include "fom/assembly/velocity_jump.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 double phi_weight(const StabilisationWeights& weights, const FluidProperties& fluid, double h) {
   return fluid.viscosity + fluid.density * (weights.reference_velocity * h + h * h / weights.reference_time);
@@ -77,4 +77,4 @@ template void add_fluid_stabilisation(const Discretisation<2>&, const Share&,
 template std::vector<VelocityJump<2>> velocity_jumps(const Discretisation<2>&, const Share&,
                                                      std::span<const PartGeometry<2>>);
 
-} // namespace undula
+} // namespace undula::fom

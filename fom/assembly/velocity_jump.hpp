@@ -8,7 +8,7 @@
 
 #include "fom/assembly/forms.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// weight * |b.n| ([d u/dn], [d v/dn]) of one facet, but for the speed |b.n| (Burman, Fernandez & Hansbo,
 /// SIAM J. Numer. Anal. 44, 2006).
@@ -53,4 +53,4 @@ void visit_velocity_jumps(const Discretisation<dim>& disc, std::span<const Veloc
   }
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -203,4 +203,4 @@ template Gap<2> gap_to_walls(const WallContact<2>&, const Point<2>&);
 template double smallest_gap(const WallContact<2>&, const Eigen::VectorXd&);
 template ContactForce contact_force(const WallContact<2>&, const Discretisation<2>&, const Eigen::VectorXd&);
 
-} // namespace undula
+} // namespace undula::fom

@@ -8,9 +8,10 @@
 #pragma once
 
 #include "fom/assembly/sparse.hpp"
+#include "fom/problem/stepping.hpp"
 #include "fom/space/discretisation.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// What of a problem takes part in contact, prepared once.
 template <int dim>
@@ -87,4 +88,4 @@ template <int dim>
 ContactBalance contact_balance(const WallContact<dim>& contact, const Eigen::VectorXd& linearised,
                                const Eigen::VectorXd& displacement);
 
-} // namespace undula
+} // namespace undula::fom

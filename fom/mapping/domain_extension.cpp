@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
 #include "fom/mapping/skin_elasticity.hpp"
 #include "fom/mapping/weighted_laplace.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -162,4 +162,4 @@ template struct DomainExtension<2>;
 template DomainExtension<2> prepare_extension(const Discretisation<2>&, const ExtensionSettings&);
 template std::vector<Point<2>> extend(const DomainExtension<2>&, const Eigen::VectorXd&);
 
-} // namespace undula
+} // namespace undula::fom

@@ -20,7 +20,7 @@
 
 #include "fom/space/discretisation.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 struct ExtensionSettings {
   double exponent = 64;      ///< p of the reach; 2 with shear_weight 1: a harmonic reach
@@ -49,4 +49,4 @@ template <int dim>
 std::vector<Point<dim>> extend(const DomainExtension<dim>& extension,
                                const Eigen::VectorXd& solid_displacement);
 
-} // namespace undula
+} // namespace undula::fom

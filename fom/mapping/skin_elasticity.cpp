@@ -3,7 +3,7 @@
 #include "fom/assembly/facet_patch.hpp"
 #include "fom/mapping/map_penalties.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -108,4 +108,4 @@ SkinElasticity<dim> skin_elasticity(const Discretisation<dim>& disc,
 template SkinElasticity<2> skin_elasticity(const Discretisation<2>&, std::span<const PartGeometry<2>>,
                                            double);
 
-} // namespace undula
+} // namespace undula::fom

@@ -6,7 +6,7 @@
 #include "fom/assembly/part_geometry.hpp"
 #include "fom/assembly/sparse.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// -div eps(y) = 0 in the fluid at rest, y = g on the skin by Nitsche's method with ghost penalty, free on
 /// the boundary: rigid motions of all solids together are met exactly. Plain integrals: no factor r in
@@ -21,4 +21,4 @@ template <int dim>
 SkinElasticity<dim> skin_elasticity(const Discretisation<dim>& disc,
                                     std::span<const PartGeometry<dim>> geometries, double smoothing_length);
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,7 +5,7 @@
 #include "fom/assembly/facet_patch.hpp"
 #include "fom/mapping/map_penalties.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 template <int dim>
 WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
@@ -71,4 +71,4 @@ WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
 template WeightedLaplace<2> weighted_laplace(const Discretisation<2>&, std::span<const PartGeometry<2>>,
                                              std::span<const double>, const Point<2>&);
 
-} // namespace undula
+} // namespace undula::fom

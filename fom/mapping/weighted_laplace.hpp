@@ -6,7 +6,7 @@
 #include "fom/assembly/part_geometry.hpp"
 #include "fom/assembly/sparse.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// -div(K grad y) = 0 in the fluid at rest, K = weight * diag(axes) with one weight per part, y = 1 on the
 /// skin by Nitsche's method with ghost penalty, free on the boundary. Plain integrals: no factor r in
@@ -23,4 +23,4 @@ WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
                                       std::span<const PartGeometry<dim>> geometries,
                                       std::span<const double> weights, const Point<dim>& axes);
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "base/error.hpp"
-#include "base/units.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/units.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 constexpr double cm_per_mm = units::cm_per_mm;
@@ -322,4 +322,4 @@ std::vector<SceneKey> keys_of(const Scene& scene) {
   return keys;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -9,7 +9,7 @@
 
 #include "fom/scene/scene_table.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// One kind of named entries.
 struct EntryKind {
@@ -51,4 +51,4 @@ inline constexpr const char* constants_section = "constants";
 /// The keys that a scene has: of the table as far as they apply to it, then of its entries.
 std::vector<SceneKey> keys_of(const Scene& scene);
 
-} // namespace undula
+} // namespace undula::fom

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.hpp"
-#include "fom/io/text_file.hpp"
-#include "fom/smooth_ramp.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/smooth_ramp.hpp"
+#include "rom/base/text_file.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 std::array<std::string, 3> expression_variables(Space space) {
   if (space == Space::axisymmetric) return {"r", "z", "t"};
@@ -73,4 +73,4 @@ bool is_free_name(const std::string& name) {
   return !parser.GetFunDef().contains(name);
 }
 
-} // namespace undula
+} // namespace undula::fom

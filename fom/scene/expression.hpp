@@ -8,7 +8,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Names that expressions may use besides constants: "x", "y" or "r", "z" (mm) and "t" (s).
 std::array<std::string, 3> expression_variables(Space space);
@@ -36,4 +36,4 @@ private:
 /// Whether `name` may stand for a constant: letters, digits and _, not a name that expressions know already.
 bool is_free_name(const std::string& name);
 
-} // namespace undula
+} // namespace undula::fom

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace undula {
+namespace undula::fom {
 
 /// (x, y), in axisymmetric space (r, z), cm.
 using Position = std::array<double, 2>;
@@ -95,4 +95,4 @@ struct ProblemStatement {
   std::map<std::string, ForceStatement> forces;
 };
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,12 +1,12 @@
 #include "fom/scene/scene_checks.hpp"
 
-#include "base/error.hpp"
-#include "base/units.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_value.hpp"
 #include "fom/scene/statement_checks.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/units.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 void check_geometry(const Scene& scene, const std::string& where) {
@@ -172,4 +172,4 @@ void check_consistency(const Scene& scene, const std::string& where) {
   check_training(scene, where);
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,9 +5,9 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Throws InputError naming the keys that contradict each other; `where` names the scene in the message.
 void check_consistency(const Scene& scene, const std::string& where);
 
-} // namespace undula
+} // namespace undula::fom

@@ -9,7 +9,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Reads a scene file, fills in the defaults, applies `overrides` ("section.key=value", as given to `--set`,
 /// later ones win) and checks everything that needs no other file than the scene. Relative paths in the file
@@ -35,4 +35,4 @@ std::string scene_to_toml(const Scene& scene);
 /// can be prolonged from a checkpoint.
 std::string scene_hash(const Scene& scene);
 
-} // namespace undula
+} // namespace undula::fom

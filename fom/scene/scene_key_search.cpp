@@ -7,7 +7,7 @@
 
 #include "fom/scene/entry_table.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 std::string_view leaf_of(std::string_view path) {
@@ -106,4 +106,4 @@ bool is_section(std::string_view name) {
          std::any_of(table.begin(), table.end(), [&](const SceneKey& key) { return key.section() == name; });
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -6,7 +6,7 @@
 
 #include "fom/scene/scene_table.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Levenshtein distance: insertions, deletions and replacements of single characters that lead from a to b.
 int edit_distance(std::string_view a, std::string_view b);
@@ -27,4 +27,4 @@ const SceneKey& nearest_real_key(std::string_view path);
 /// Whether keys exist below this section name.
 bool is_section(std::string_view name);
 
-} // namespace undula
+} // namespace undula::fom

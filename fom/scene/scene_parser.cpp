@@ -10,15 +10,15 @@
 #include <sstream>
 #include <type_traits>
 
-#include "base/error.hpp"
 #include "fom/scene/entry_table.hpp"
 #include "fom/scene/expression.hpp"
 #include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_key_search.hpp"
 #include "fom/scene/scene_tolerance.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// What a message says about the place of a node, and where its relative paths start.
@@ -487,4 +487,4 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
   return scene;
 }
 
-} // namespace undula
+} // namespace undula::fom

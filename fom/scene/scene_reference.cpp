@@ -3,7 +3,7 @@
 #include "fom/scene/entry_table.hpp"
 #include "fom/scene/scene_table.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// Bars would end the cell of a Markdown table.
@@ -114,4 +114,4 @@ std::string scene_keys_help() {
   return text;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,9 +5,9 @@
 #include <limits>
 #include <type_traits>
 
-#include "base/units.hpp"
+#include "rom/base/units.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 constexpr double cm_per_mm = units::cm_per_mm;
@@ -463,4 +463,4 @@ std::string section_help(const std::string& section) {
   return "";
 }
 
-} // namespace undula
+} // namespace undula::fom

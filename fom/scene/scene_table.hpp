@@ -15,7 +15,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Interval of allowed numbers in the key's unit.
 struct AllowedRange {
@@ -137,4 +137,4 @@ std::string default_text(const SceneKey& key);
 /// Shortest decimal notation that reads back to exactly `value`, always a TOML float.
 std::string shortest_number(double value);
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,10 +1,10 @@
 // Texts made from single keys of the scene table: ranges, defaults, numbers.
 #include <cstdio>
 
-#include "fom/io/text_file.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "rom/base/text_file.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 template <typename... Visitors>
@@ -102,4 +102,4 @@ std::string shortest_number(double value) {
   return number;
 }
 
-} // namespace undula
+} // namespace undula::fom

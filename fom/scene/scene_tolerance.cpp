@@ -6,7 +6,7 @@
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_value.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 std::size_t place_in_table(std::string_view path) {
@@ -49,4 +49,4 @@ void narrow_tolerance(Scene& scene, const std::string& key) {
   set_tolerance(scene, key, std::max(tolerance, 0.0));
 }
 
-} // namespace undula
+} // namespace undula::fom

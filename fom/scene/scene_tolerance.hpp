@@ -6,7 +6,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Tolerance stated for a key, in its unit; 0 where none is.
 double tolerance_of(const Scene& scene, std::string_view key);
@@ -19,4 +19,4 @@ void set_tolerance(Scene& scene, const std::string& key, double tolerance);
 /// key's allowed range, so that the scene can be written and read. Throws InputError as surface_value.
 void narrow_tolerance(Scene& scene, const std::string& key);
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "base/error.hpp"
 #include "fom/scene/entry_table.hpp"
 #include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_key_search.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 std::string name_of(const Scene& scene) {
@@ -76,4 +76,4 @@ Scene with_value(const Scene& scene, std::string_view key, double surface_value)
   return changed;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,7 +5,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Value of the real-valued key `key` ("operating_point.stroke_mm") in its surface unit. Throws InputError
 /// for an unknown key and for one that holds no real number, with the nearest one that does.
@@ -20,4 +20,4 @@ Scene with_value(const Scene& scene, std::string_view key, double surface_value)
 /// multiplies; where none exists, the nearest.
 double to_surface_unit(double stored, double cgs_per_unit);
 
-} // namespace undula
+} // namespace undula::fom

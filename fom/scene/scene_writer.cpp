@@ -5,14 +5,14 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/error.hpp"
 #include "fom/scene/entry_table.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_tolerance.hpp"
 #include "fom/scene/scene_value.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// TOML basic string.
@@ -167,4 +167,4 @@ std::string scene_hash(const Scene& scene) {
   return fingerprint.hex();
 }
 
-} // namespace undula
+} // namespace undula::fom

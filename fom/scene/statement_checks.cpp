@@ -1,9 +1,9 @@
 #include "fom/scene/statement_checks.hpp"
 
-#include "base/error.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
@@ -182,4 +182,4 @@ void check_statement(const Scene& scene, const std::string& where) {
   }
 }
 
-} // namespace undula
+} // namespace undula::fom

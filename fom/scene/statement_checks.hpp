@@ -6,7 +6,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Names of the boundaries of the fluid: sides of the domain and holes.
 std::set<std::string> boundary_names(const ProblemStatement& problem);
@@ -17,4 +17,4 @@ void check_refinements(const Scene& scene, const std::string& where);
 /// Throws InputError naming the keys that contradict each other; `where` names the scene in the message.
 void check_statement(const Scene& scene, const std::string& where);
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -210,4 +210,4 @@ template Discretisation<2> recut(Discretisation<2>&, const Eigen::VectorXd&, con
 template std::vector<Point<2>> unknown_positions(const Discretisation<2>&);
 template Ownership distribute_unknowns(const Discretisation<2>&, int);
 
-} // namespace undula
+} // namespace undula::fom

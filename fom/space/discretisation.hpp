@@ -10,12 +10,13 @@
 #include <span>
 #include <vector>
 
-#include "fom/problem.hpp"
+#include "fom/fom.hpp"
+#include "fom/problem/problem.hpp"
 #include "fom/space/domain_map.hpp"
 #include "fom/space/solid_space.hpp"
-#include "geometry/cut.hpp"
+#include "geometry/cut/cut.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// A fluid unknown whose value is imposed by boundary condition `condition`.
 template <int dim>
@@ -87,4 +88,4 @@ struct Ownership {
 template <int dim>
 Ownership distribute_unknowns(const Discretisation<dim>& discretisation, int ranks);
 
-} // namespace undula
+} // namespace undula::fom

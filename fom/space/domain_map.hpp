@@ -3,9 +3,10 @@
 
 #include <vector>
 
-#include "geometry/simplex_mesh.hpp"
+#include "fom/fom.hpp"
+#include "geometry/mesh/simplex_mesh.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Nodal (P1) values on the fluid nodes of a cut. Empty: the identity.
 template <int dim>
@@ -15,4 +16,4 @@ struct DomainMap {
   bool is_identity() const { return displacement.empty(); }
 };
 
-} // namespace undula
+} // namespace undula::fom

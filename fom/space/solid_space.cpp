@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-namespace undula {
+namespace undula::fom {
 
 template <int dim>
 QuadraticSpace<dim> build_quadratic_space(const SimplexMesh<dim>& mesh) {
@@ -56,4 +56,4 @@ template QuadraticValues<2> quadratic_values<2>(const Eigen::Vector3d&);
 template QuadraticGradients<2> quadratic_gradients<2>(const Eigen::Vector3d&,
                                                       const Eigen::Matrix<double, 2, 3>&);
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,9 +4,10 @@
 #include <array>
 #include <vector>
 
-#include "geometry/simplex_mesh.hpp"
+#include "fom/fom.hpp"
+#include "geometry/mesh/simplex_mesh.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 template <int dim>
 struct QuadraticSpace {
@@ -33,4 +34,4 @@ template <int dim>
 QuadraticGradients<dim> quadratic_gradients(const Eigen::Matrix<double, dim + 1, 1>& lambda,
                                             const Eigen::Matrix<double, dim, dim + 1>& barycentric_gradients);
 
-} // namespace undula
+} // namespace undula::fom

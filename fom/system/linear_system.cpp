@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -303,4 +303,4 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
 
 template class LinearSystem<2>;
 
-} // namespace undula
+} // namespace undula::fom

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "fom/petsc/handles.hpp"
+#include "fom/system/handles.hpp"
 #include "fom/system/operators.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Factors of the operators in the system matrix
 ///   mass * mass + physical + stabilisation + damping * damping + stiffness * stiffness + convection(b) +
@@ -73,4 +73,4 @@ private:
   PetscSolver solver_;
 };
 
-} // namespace undula
+} // namespace undula::fom

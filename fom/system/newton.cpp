@@ -4,9 +4,9 @@
 #include <limits>
 #include <string>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -96,4 +96,4 @@ template SolidResponse<2> complete_response(const Discretisation<2>&, const Oper
 template int solve_newton(LinearSystem<2>&, const Discretisation<2>&, const Operators<2>&, const SolidMotion&,
                           const Eigen::VectorXd&, const NewtonSettings&, int, bool, Eigen::VectorXd&);
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,9 +1,10 @@
 // Newton's method for the balance of forces on solids with a nonlinear law, inside one monolithic solve.
 #pragma once
 
+#include "fom/problem/stepping.hpp"
 #include "fom/system/linear_system.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// How the unknowns x move the solids: d = rates.d x + offset (cm), v = rates.v x (cm/s).
 struct SolidMotion {
@@ -32,4 +33,4 @@ int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, con
                  const SolidMotion& motion, const Eigen::VectorXd& rhs, const NewtonSettings& settings,
                  int step, bool keep_factors, Eigen::VectorXd& x);
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,6 +1,6 @@
 #include "fom/system/operators.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values) {
   int ranks = 1;
@@ -100,4 +100,4 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
 template Operators<2> build_operators(const Discretisation<2>&, MPI_Comm, PhaseTimer&);
 template Eigen::Matrix<double, 2, 3> part_velocity<2>(const Discretisation<2>&, int, const Eigen::VectorXd&);
 
-} // namespace undula
+} // namespace undula::fom

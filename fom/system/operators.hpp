@@ -6,11 +6,11 @@
 #include <map>
 #include <string>
 
-#include "base/phase_timer.hpp"
 #include "fom/assembly/nonlinear_solid.hpp"
 #include "fom/assembly/velocity_jump.hpp"
+#include "rom/base/phase_timer.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// With x the unknowns (fluid velocity and pressure, solid velocity) and d the solid displacement,
 ///   mass x' + (physical + stabilisation + damping) x + stiffness d + f(d, x) + (convection(x) + jumps(x)) x
@@ -176,4 +176,4 @@ void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& ope
   }
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace undula {
+namespace undula::fom {
 
 BandMatrix::BandMatrix(int size, int reach)
     : size_(size),
@@ -30,4 +30,4 @@ void BandMatrix::solve(Eigen::VectorXd& right_side) const {
                       pivots_.data(), right_side.data(), size_);
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace undula {
+namespace undula::fom {
 
 /// Square matrix with `reach` diagonals on either side of the main one, in LAPACK's band storage with room
 /// for the fill-in of pivoting.
@@ -29,4 +29,4 @@ private:
   std::vector<int> pivots_;
 };
 
-} // namespace undula
+} // namespace undula::fom

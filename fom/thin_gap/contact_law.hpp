@@ -3,7 +3,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Contact pressure at a gap of this height, dyn/cm^2: grows linearly below the film thickness, after a
 /// smooth onset over a fifth of it.
@@ -25,4 +25,4 @@ inline double contact_energy(const ThinGapSettings& settings, double height) {
   return settings.contact_stiffness * (onset * onset / 6 + 0.5 * onset * past + 0.5 * past * past);
 }
 
-} // namespace undula
+} // namespace undula::fom

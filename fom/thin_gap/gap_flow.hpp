@@ -6,7 +6,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Closures of the flow in force, cgs.
 struct GapFlowLaw {
@@ -77,4 +77,4 @@ Number drop_at_end(const GapFlowLaw& law, const Number& velocity, const Number& 
   return Number(-drop_at_beginning(law, Number(-velocity), kinetic));
 }
 
-} // namespace undula
+} // namespace undula::fom

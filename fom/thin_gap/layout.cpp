@@ -6,12 +6,13 @@
 #include <numbers>
 #include <string>
 
-#include "base/error.hpp"
-#include "geometry/passage_flow.hpp"
-#include "geometry/profile_scale.hpp"
-#include "geometry/wall_ray.hpp"
+#include "fom/fom.hpp"
+#include "geometry/mesh/passage_flow.hpp"
+#include "geometry/wave_pump/profile_scale.hpp"
+#include "geometry/wave_pump/wall_ray.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -217,4 +218,4 @@ ThinGapLayout thin_gap_layout(const PumpProfile& profile, const SimplexMesh<2>& 
   return layout;
 }
 
-} // namespace undula
+} // namespace undula::fom

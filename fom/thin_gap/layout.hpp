@@ -3,10 +3,11 @@
 
 #include <vector>
 
-#include "geometry/profile.hpp"
-#include "geometry/simplex_mesh.hpp"
+#include "fom/fom.hpp"
+#include "geometry/mesh/simplex_mesh.hpp"
+#include "geometry/wave_pump/profile.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// A passage as one flow: pressure drop = density * inertance * dq/dt + viscosity * resistance * q + losses
 /// of density / 2 * (q / area)^2.
@@ -46,4 +47,4 @@ double node_area(const ThinGapLayout& layout, int node);
 ThinGapLayout thin_gap_layout(const PumpProfile& profile, const SimplexMesh<2>& background,
                               double clamp_radius, int cells);
 
-} // namespace undula
+} // namespace undula::fom

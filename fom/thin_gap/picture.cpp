@@ -3,7 +3,7 @@
 #include "fom/thin_gap/step.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -111,4 +111,4 @@ std::vector<NodalField> solid_fields(const ThinGapModel& model, const State& sta
           on_section("velocity", "cm/s", state.x[0], at.deflection_rate(0))};
 }
 
-} // namespace undula
+} // namespace undula::fom

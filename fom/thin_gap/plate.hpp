@@ -7,7 +7,7 @@
 
 #include "fom/scene/scene.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Deflection w (axial, cm), rotation theta (dw/dr without shear, rad), radial displacement u (cm) of the
 /// mid-plane, or their rates.
@@ -110,4 +110,4 @@ PlateForces<Number> plate_forces(const PlateElement& element, const SolidPropert
   return f;
 }
 
-} // namespace undula
+} // namespace undula::fom

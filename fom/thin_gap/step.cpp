@@ -3,11 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "fom/pump_problem.hpp"
-#include "fom/simulation.hpp"
+#include "fom/levels/simulation.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/thin_gap/step_terms.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 GapFlowLaw gap_flow_law(const Scene& scene) {
   const auto& settings = scene.thin_gap;
@@ -93,4 +93,4 @@ Eigen::VectorXd displacements(const ThinGapStep& step, const Eigen::VectorXd& x)
   return d;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -7,9 +7,9 @@
 #include "fom/thin_gap/gap_flow.hpp"
 #include "fom/thin_gap/layout.hpp"
 #include "fom/thin_gap/unknowns.hpp"
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// What does not change within a step.
 struct ThinGapStep {
@@ -55,4 +55,4 @@ inline double lower_height(const ThinGapLayout& layout, int node, double w) {
   return layout.lower_height[node] + w;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -5,7 +5,7 @@
 #include "fom/thin_gap/contact_law.hpp"
 #include "fom/thin_gap/step_terms.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -97,4 +97,4 @@ EnergyTerms thin_gap_energy(const ThinGapStep& step, const Eigen::VectorXd& x, d
   return terms;
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -3,9 +3,9 @@
 
 #include "fom/thin_gap/step.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Energies and powers of the step that ended in x.
 EnergyTerms thin_gap_energy(const ThinGapStep& step, const Eigen::VectorXd& x, double holder_force);
 
-} // namespace undula
+} // namespace undula::fom

@@ -6,7 +6,7 @@
 #include "fom/thin_gap/contact_law.hpp"
 #include "fom/thin_gap/step_terms.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -314,4 +314,4 @@ void assemble(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd
   holder_force = impose_holder(step, x, residual, matrix);
 }
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,7 +4,7 @@
 #include "fom/thin_gap/band_matrix.hpp"
 #include "fom/thin_gap/step.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Left over of every equation at x, in `residual`: flows of pressures (dyn/cm^2), volumes (cm^3/s), forces
 /// (dyn, dyn cm), imposed velocities (cm/s). With `matrix`, its derivatives as well. `holder_force` becomes
@@ -12,4 +12,4 @@ namespace undula {
 void assemble(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
               BandMatrix* matrix, double& holder_force);
 
-} // namespace undula
+} // namespace undula::fom

@@ -4,7 +4,7 @@
 #include "fom/thin_gap/plate.hpp"
 #include "fom/thin_gap/step.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// Which of the two gaps: they differ in the places of their unknowns and in the sign of the deflection.
 enum class GapSide { upper, lower };
@@ -65,4 +65,4 @@ inline PlateElement plate_element(const ThinGapLayout& layout, int inner) {
           0.5 * (layout.thickness[inner] + layout.thickness[inner + 1])};
 }
 
-} // namespace undula
+} // namespace undula::fom

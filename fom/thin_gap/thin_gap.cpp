@@ -10,13 +10,14 @@
 #include <optional>
 #include <utility>
 
-#include "base/error.hpp"
-#include "fom/pump_problem.hpp"
+#include "fom/fom.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/thin_gap/step_energy.hpp"
 #include "fom/thin_gap/step_equations.hpp"
-#include "geometry/pump.hpp"
+#include "geometry/wave_pump/pump.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 namespace {
 
@@ -247,4 +248,4 @@ MembraneProbes membrane_probes(const ThinGapModel& model, int count) {
   return probes;
 }
 
-} // namespace undula
+} // namespace undula::fom

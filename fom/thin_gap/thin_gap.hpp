@@ -2,12 +2,12 @@
 // and the channels that join the gaps to the inlet and the outlet.
 #pragma once
 
-#include "fom/io/field_writer.hpp"
+#include "fom/levels/simulation.hpp"
+#include "fom/output/field_writer.hpp"
 #include "fom/scene/scene.hpp"
-#include "fom/simulation.hpp"
 #include "fom/thin_gap/layout.hpp"
 
-namespace undula {
+namespace undula::fom {
 
 /// What one thin-gap computation needs apart from its operating point: the geometry as coefficients.
 /// Operating points of a curve share it.
@@ -44,4 +44,4 @@ std::vector<NodalField> fluid_fields(const ThinGapModel& model, const State& sta
 /// "displacement" (cm), "velocity" (cm/s) on the points of solid_picture.
 std::vector<NodalField> solid_fields(const ThinGapModel& model, const State& state);
 
-} // namespace undula
+} // namespace undula::fom

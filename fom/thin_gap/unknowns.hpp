@@ -1,7 +1,7 @@
 // Places of the unknowns of a thin-gap step: node by node, so that the matrix is a narrow band.
 #pragma once
 
-namespace undula {
+namespace undula::fom {
 
 /// State::x holds the pressure at the tip and then, per node: the flows (cm^3/s, outwards) through the face
 /// before it in the upper and the lower gap, the pressures (dyn/cm^2) at it, and the velocities of the plate.
@@ -28,4 +28,4 @@ struct ThinGapUnknowns {
   int displacements() const { return displacements_per_node * nodes; }
 };
 
-} // namespace undula
+} // namespace undula::fom

@@ -1,4 +1,4 @@
-#include "base/hdf5_file.hpp"
+#include "rom/base/hdf5_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,8 +9,8 @@
 #include <functional>
 #include <numeric>
 
-#include "base/error.hpp"
-#include "base/hdf5_handle.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_handle.hpp"
 
 namespace undula {
 namespace {

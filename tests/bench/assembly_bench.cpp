@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "fom/levels/simulation.hpp"
 #include "fom/scene/scene_file.hpp"
-#include "fom/simulation.hpp"
 
 int main(int argc, char** argv) {
   using namespace undula;

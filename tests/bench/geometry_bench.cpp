@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/cut.hpp"
-#include "geometry/dof_matching.hpp"
-#include "geometry/pump.hpp"
+#include "geometry/cut/cut.hpp"
+#include "geometry/cut/dof_matching.hpp"
+#include "geometry/wave_pump/pump.hpp"
 
 namespace {
 

@@ -2,9 +2,9 @@
 // Sample run: rom_bench --benchmark_min_time=1
 #include <benchmark/benchmark.h>
 
-#include "hq_curve.hpp"
+#include "rom/curve/hq_curve.hpp"
+#include "rom/fixed_domain/time_march.hpp"
 #include "tests/unit/rom/synthetic_operators.hpp"
-#include "time_march.hpp"
 
 namespace {
 

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.hpp"
-#include "hq_curve.hpp"
-#include "model.hpp"
-#include "periodic.hpp"
-#include "time_march.hpp"
+#include "rom/base/units.hpp"
+#include "rom/curve/hq_curve.hpp"
+#include "rom/fixed_domain/model.hpp"
+#include "rom/fixed_domain/periodic.hpp"
+#include "rom/fixed_domain/time_march.hpp"
 
 namespace undula::rom {
 namespace {

@@ -7,14 +7,13 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fom/reaction.hpp"
+#include "fom/time/reaction.hpp"
 #include "tests/verification/support/cylinder_channel.hpp"
 #include "tests/verification/support/default_weights.hpp"
+#include "tests/verification/support/names.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
-
-using namespace verification;
 
 /// Reference values of 2D-1: http://www.mathematik.tu-dortmund.de/~featflow (Nabh 1998).
 constexpr double drag_2d1 = 5.57953523384, lift_2d1 = 0.010618948146, pressure_2d1 = 0.11752016697;
@@ -156,4 +155,4 @@ TEST(FluidCylinder, DISABLED_VortexStreet) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

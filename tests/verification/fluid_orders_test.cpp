@@ -9,10 +9,8 @@
 #include "tests/verification/support/flow_gallery.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
-
-using namespace verification;
 
 const TurnedBox turned_box_section{{0.52, 0.47}, 0.21, 0.13, 0.4};
 const TurnedBox ring_section{{0.53, 0.46}, 0.17, 0.14, 0};
@@ -134,4 +132,4 @@ TEST(FluidOrders, FlowsVanishOnTheirSolids) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

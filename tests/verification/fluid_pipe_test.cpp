@@ -5,14 +5,14 @@
 #include <cstdio>
 #include <numbers>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/default_weights.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/rectangle_mesh.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
 
-using namespace verification;
 using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
 
@@ -138,4 +138,4 @@ TEST(FluidPipe, WomersleyFlow) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

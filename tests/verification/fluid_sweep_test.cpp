@@ -12,10 +12,8 @@
 #include "tests/verification/support/flow_gallery.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
-
-using namespace verification;
 
 /// Diagonal of the system on an uncut mesh of size h up to a factor: mu for velocities, h^2 / mu for
 /// pressures.
@@ -99,4 +97,4 @@ TEST(FluidSweep, ConditionIsBoundedByTheGhostPenalty) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

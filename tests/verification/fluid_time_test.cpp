@@ -3,15 +3,14 @@
 
 #include <cstdio>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/flow_gallery.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
-
-using namespace verification;
 
 /// State at t = 1 of a flow around a fixed box that a growing, turning force drives between four walls.
 Eigen::VectorXd stirred(TimeScheme scheme, int steps) {
@@ -49,4 +48,4 @@ TEST(FluidTime, SchemesHaveTheirOrder) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

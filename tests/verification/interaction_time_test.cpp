@@ -3,8 +3,9 @@
 
 #include <cstdio>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/wave_problem.hpp"
 
 namespace undula::verification {

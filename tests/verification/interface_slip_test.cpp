@@ -6,8 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fom/reaction.hpp"
+#include "fom/time/reaction.hpp"
 #include "tests/verification/support/default_weights.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
 namespace undula::verification {

@@ -15,10 +15,9 @@
 #include "tests/verification/support/solid_meshes.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
 
-using namespace verification;
 constexpr double pi = std::numbers::pi;
 
 /// A steady flow around a solid at rest, seen from a frame through which it is carried by D(t): u = V + U(x -
@@ -277,4 +276,4 @@ void expect_stokes_layer(const std::vector<int>& meshes, double largest_error) {
 TEST(MappedOrders, StokesLayerOverAMovingPlate) { expect_stokes_layer({4, 8}, 0.01); }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

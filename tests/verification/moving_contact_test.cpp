@@ -3,9 +3,10 @@
 
 #include <cstdio>
 
-#include "base/error.hpp"
-#include "fom/moving/moving_stepper.hpp"
+#include "fom/coupling/moving_stepper.hpp"
+#include "rom/base/error.hpp"
 #include "tests/verification/support/default_weights.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

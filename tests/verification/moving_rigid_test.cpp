@@ -4,9 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fom/moving/moving_stepper.hpp"
-#include "fom/reaction.hpp"
+#include "fom/coupling/moving_stepper.hpp"
+#include "fom/time/reaction.hpp"
 #include "tests/verification/support/default_weights.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

@@ -9,10 +9,8 @@
 #include "tests/verification/support/run_scene.hpp"
 #include "tests/verification/support/tube_wave.hpp"
 
-namespace undula {
+namespace undula::verification {
 namespace {
-
-using namespace verification;
 
 // DFG 2D-1, force = C * density U^2 D / 2 = C * 0.002 N/m (Nabh 1998).
 constexpr double drag_2d1 = 5.57953523384 * 0.002, lift_2d1 = 0.010618948146 * 0.002;
@@ -275,4 +273,4 @@ TEST(SceneFlow, DISABLED_WaveInACompliantTubeAsShipped) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::verification

@@ -7,6 +7,7 @@
 
 #include "fom/system/operators.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

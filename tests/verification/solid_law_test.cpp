@@ -6,6 +6,7 @@
 
 #include "fom/assembly/nonlinear_solid.hpp"
 #include "fom/system/operators.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

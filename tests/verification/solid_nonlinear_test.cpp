@@ -7,8 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_von_karman.hpp"
 #include "tests/verification/support/turek_flag.hpp"
 

@@ -3,7 +3,8 @@
 
 #include <cstdio>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

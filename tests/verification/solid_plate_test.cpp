@@ -6,8 +6,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/plate_theory.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 

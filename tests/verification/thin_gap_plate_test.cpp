@@ -9,9 +9,10 @@
 #include <cstdio>
 #include <numbers>
 
-#include "fom/time_stepper.hpp"
-#include "geometry/profile.hpp"
+#include "fom/time/time_stepper.hpp"
+#include "geometry/wave_pump/profile.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/plate_theory.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 #include "tests/verification/support/thin_gap_mindlin.hpp"

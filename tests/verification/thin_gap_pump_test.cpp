@@ -5,8 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fom/simulation.hpp"
-#include "fom/step_table.hpp"
+#include "fom/levels/simulation.hpp"
+#include "fom/output/step_table.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_scene.hpp"
 
 namespace undula::verification {

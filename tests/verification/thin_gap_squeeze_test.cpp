@@ -6,7 +6,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "fom/simulation.hpp"
+#include "fom/levels/simulation.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_scene.hpp"
 
 namespace undula::verification {

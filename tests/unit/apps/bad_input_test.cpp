@@ -5,7 +5,7 @@
 #include "tests/unit/apps/run_undula.hpp"
 #include "tests/unit/apps/test_model.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 void expect_one_refusal(const Outcome& outcome, const std::vector<std::string>& texts) {
@@ -170,4 +170,4 @@ TEST(BadInput, UsageErrorsExitWithTwoAndHelpWithZero) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -6,7 +6,7 @@
 
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -95,4 +95,4 @@ TEST(BandCommand, NeedsTolerancesAndAScene) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -8,7 +8,7 @@
 #include "fom/scene/scene_value.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -105,4 +105,4 @@ TEST(CalibrateCommand, WrongInputExitsWithTwoAndWritesNothing) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

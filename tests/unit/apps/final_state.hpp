@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "base/hdf5_file.hpp"
-#include "fom/io/checkpoint.hpp"
+#include "apps/apps.hpp"
+#include "fom/output/checkpoint.hpp"
+#include "rom/base/hdf5_file.hpp"
 
-namespace undula {
+namespace undula::apps {
 
 /// All time levels of the newest checkpoint in an output folder, one after the other.
 inline std::vector<double> final_state(const std::filesystem::path& folder) {
@@ -21,4 +22,4 @@ inline std::vector<double> final_state(const std::filesystem::path& folder) {
   return all;
 }
 
-} // namespace undula
+} // namespace undula::apps

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hq_curve.hpp"
+#include "rom/curve/hq_curve.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 #include "tests/unit/apps/test_model.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 const std::string data = UNDULA_SOURCE_DIR "/data/measured/corwave_120hz_0.53mm.csv";
@@ -113,4 +113,4 @@ TEST(CheckCommand, TheShippedSceneIsValid) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -1,19 +1,19 @@
 // Measured curves, lists of heads, the benchmark's comparison.
-#include "apps/measured_curve.hpp"
+#include "apps/input/measured_curve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "apps/head_list.hpp"
-#include "apps/progress.hpp"
-#include "apps/text_table.hpp"
-#include "apps/validation.hpp"
-#include "base/error.hpp"
+#include "apps/input/head_list.hpp"
+#include "apps/input/validation.hpp"
+#include "apps/output/progress.hpp"
+#include "apps/output/text_table.hpp"
+#include "rom/base/error.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 const std::string shipped = UNDULA_SOURCE_DIR "/data/measured/corwave_120hz_0.53mm.csv";
@@ -142,4 +142,4 @@ TEST(TextTable, ColumnsAreAligned) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -1,13 +1,13 @@
 // Pictures: drawn whole, restylable, and no obstacle where gnuplot is missing.
-#include "apps/plots.hpp"
+#include "apps/output/plots.hpp"
 
 #include <gtest/gtest.h>
 
-#include "apps/gnuplot.hpp"
-#include "base/error.hpp"
+#include "apps/output/gnuplot.hpp"
+#include "rom/base/error.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 /// Pixels of a PNG, from the fixed place of width and height in its header; 0 x 0 for anything else.
@@ -87,4 +87,4 @@ TEST(Plots, ABrokenScriptLeavesNoPicture) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -5,10 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "apps/level_report.hpp"
+#include "apps/output/level_report.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 const std::string root = UNDULA_SOURCE_DIR;
@@ -97,4 +97,4 @@ TEST(ReportCommand, RefusesRunsOfAnotherOperatingPointAndBadVariations) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

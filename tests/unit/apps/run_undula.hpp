@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace undula {
+namespace undula::apps {
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -94,4 +94,4 @@ inline std::vector<std::filesystem::path> corpus(const std::string& folder) {
   return files;
 }
 
-} // namespace undula
+} // namespace undula::apps

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_key_search.hpp"
 #include "fom/scene/scene_reference.hpp"
+#include "rom/base/error.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 const std::string shipped = UNDULA_SOURCE_DIR "/data/scenes/wave_pump_fixed.toml";
@@ -201,4 +201,4 @@ TEST(SceneTable, ThePageInTheDocsIsPrintedByTheTable) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
-#include "fom/pump_problem.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_tolerance.hpp"
-#include "geometry/profile_scale.hpp"
+#include "geometry/wave_pump/profile_scale.hpp"
+#include "rom/base/error.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 const std::string shipped = UNDULA_SOURCE_DIR "/data/scenes/wave_pump_fixed.toml";
@@ -205,4 +205,4 @@ TEST(SceneValue, RefusesWithTheKeyThatWasMeant) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

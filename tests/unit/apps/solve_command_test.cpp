@@ -8,13 +8,13 @@
 #include <random>
 #include <thread>
 
-#include "base/hdf5_file.hpp"
-#include "fom/io/checkpoint.hpp"
-#include "fom/io/time_series.hpp"
+#include "fom/output/checkpoint.hpp"
+#include "fom/output/time_series.hpp"
+#include "rom/base/hdf5_file.hpp"
 #include "run_undula.hpp"
 #include "tests/unit/apps/final_state.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -215,4 +215,4 @@ TEST(ValidateCommand, ASceneIsRunAtEveryHead) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

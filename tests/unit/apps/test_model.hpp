@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "model.hpp"
+#include "rom/fixed_domain/model.hpp"
 #include "tests/unit/rom/synthetic_operators.hpp"
 
-namespace undula {
+namespace undula::apps {
 
 inline rom::Model small_model() {
   rom::Model model;
@@ -25,4 +25,4 @@ inline std::filesystem::path write_small_model(const std::filesystem::path& fold
   return file;
 }
 
-} // namespace undula
+} // namespace undula::apps

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/hdf5_file.hpp"
-#include "fom/io/checkpoint.hpp"
-#include "fom/io/time_series.hpp"
+#include "fom/output/checkpoint.hpp"
+#include "fom/output/time_series.hpp"
+#include "rom/base/hdf5_file.hpp"
 #include "tests/unit/apps/final_state.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
-namespace undula {
+namespace undula::apps {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -202,4 +202,4 @@ TEST(ThinGapInput, WhatDoesNotGoTogetherIsRefused) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::apps

@@ -1,4 +1,4 @@
-#include "base/hdf5_file.hpp"
+#include "rom/base/hdf5_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <random>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
 namespace undula {
 namespace {

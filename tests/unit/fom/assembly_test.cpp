@@ -4,10 +4,10 @@
 #include <random>
 
 #include "fom/system/operators.hpp"
-#include "geometry/pump.hpp"
+#include "geometry/wave_pump/pump.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -251,4 +251,4 @@ TEST(PumpVolumes, AreThoseOfTheProfileRevolved) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

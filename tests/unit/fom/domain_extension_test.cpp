@@ -9,10 +9,10 @@
 #include <limits>
 
 #include "fom/assembly/part_geometry.hpp"
-#include "geometry/pump.hpp"
+#include "geometry/wave_pump/pump.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -242,4 +242,4 @@ TEST(DomainExtension, TurnsTheFluidWithATip) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

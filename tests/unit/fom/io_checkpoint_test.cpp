@@ -4,12 +4,12 @@
 #include <fstream>
 #include <limits>
 
-#include "base/error.hpp"
-#include "base/hdf5_file.hpp"
-#include "fom/io/checkpoint.hpp"
+#include "fom/output/checkpoint.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_file.hpp"
 #include "tests/unit/fom/io_folder.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using CheckpointTest = FolderTest;
@@ -104,4 +104,4 @@ TEST(SceneStamp, TellsScenesApart) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

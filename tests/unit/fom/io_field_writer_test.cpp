@@ -4,13 +4,13 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/error.hpp"
-#include "base/hdf5_file.hpp"
-#include "fom/io/field_writer.hpp"
-#include "fom/io/text_file.hpp"
+#include "fom/output/field_writer.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_file.hpp"
+#include "rom/base/text_file.hpp"
 #include "tests/unit/fom/io_folder.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using boost::property_tree::ptree;
@@ -205,4 +205,4 @@ TEST_F(FieldWriterTest, RefusesWhatDoesNotFitTheMesh) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace undula {
+namespace undula::fom {
 
 class FolderTest : public testing::Test {
 protected:
@@ -23,4 +23,4 @@ protected:
   std::filesystem::path folder;
 };
 
-} // namespace undula
+} // namespace undula::fom

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/error.hpp"
-#include "fom/io/series_statistics.hpp"
-#include "fom/io/text_file.hpp"
+#include "fom/output/series_statistics.hpp"
 #include "io_folder.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using std::numbers::pi;
@@ -63,4 +63,4 @@ TEST_F(SeriesStatisticsFile, HasOneLinePerColumn) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

@@ -3,12 +3,12 @@
 #include <limits>
 #include <numbers>
 
-#include "base/error.hpp"
-#include "fom/io/text_file.hpp"
-#include "fom/io/time_series.hpp"
+#include "fom/output/time_series.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 #include "tests/unit/fom/io_folder.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 const std::vector<std::string> columns{"time_s", "outflow_l_per_min", "power_W"};
@@ -122,4 +122,4 @@ TEST_F(TimeSeriesTest, SkipsThePeriodInWhichATableBegins) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

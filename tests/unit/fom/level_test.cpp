@@ -1,14 +1,14 @@
 // What a level shows of itself. Finite elements on the coarsest mesh of the pump.
-#include "fom/level.hpp"
+#include "fom/levels/level.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
-#include "base/error.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 Scene coarse_scene() {
@@ -69,4 +69,4 @@ TEST(LevelView, AFieldThatIsNotThereIsNamed) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

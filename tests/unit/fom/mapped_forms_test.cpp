@@ -8,7 +8,7 @@
 #include "tests/verification/support/channel_problem.hpp"
 #include "tests/verification/support/mapped_run.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -243,4 +243,4 @@ TEST_P(MappedForms, APistonPushesAUniformFlow) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

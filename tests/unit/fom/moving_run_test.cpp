@@ -4,14 +4,14 @@
 
 #include <stdexcept>
 
-#include "base/hdf5_file.hpp"
-#include "fom/io/text_file.hpp"
-#include "fom/level.hpp"
-#include "fom/run_directory.hpp"
+#include "fom/levels/level.hpp"
+#include "fom/output/run_directory.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "io_folder.hpp"
+#include "rom/base/hdf5_file.hpp"
+#include "rom/base/text_file.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// A leaf that stands in a channel of 16 x 8 mm, bent by the flow until it crosses elements. A map has to
@@ -197,4 +197,4 @@ INSTANTIATE_TEST_SUITE_P(Couplings, MovingRunTest, testing::Values("explicit", "
                          [](const auto& instance) { return std::string(instance.param); });
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

@@ -1,11 +1,11 @@
 // Newton's method inside the monolithic step: a plate under a nonlinear law on a moving holder in a channel.
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
+#include "rom/base/error.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -125,4 +125,4 @@ TEST(NonlinearStepMpi, AgreesWithOneRank) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

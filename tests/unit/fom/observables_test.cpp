@@ -1,5 +1,5 @@
 // Observables of states written down by hand.
-#include "fom/observables.hpp"
+#include "fom/output/observables.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/verification/support/channel_problem.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -115,4 +115,4 @@ TEST(Flow, IsPositiveOutOfTheOutletAndIntoTheInlet) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

@@ -1,14 +1,14 @@
-#include "fom/run_directory.hpp"
+#include "fom/output/run_directory.hpp"
 
 #include <cmath>
 
-#include "base/error.hpp"
-#include "base/hdf5_file.hpp"
-#include "fom/io/text_file.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "io_folder.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_file.hpp"
+#include "rom/base/text_file.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// The scene only lends its hash, its name and its intervals: the level below knows nothing of it.
@@ -187,4 +187,4 @@ TEST(RunDirectoryChecks, CheckpointsHaveToFallOnFreshFactorisations) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

@@ -1,14 +1,14 @@
 // From a scene to a run: the coarsest mesh of the pump, a few steps.
-#include "fom/simulation.hpp"
+#include "fom/levels/simulation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "fom/pump_problem.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// The shipped scene on a coarse mesh. Clamped from `clamp_mm` on: at 5 mm the membrane is all holder.
@@ -80,4 +80,4 @@ TEST(Simulation, LetsTheMembraneBend) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

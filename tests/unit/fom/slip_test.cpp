@@ -6,7 +6,7 @@
 #include "fom/system/operators.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -66,4 +66,4 @@ INSTANTIATE_TEST_SUITE_P(Spaces, Slip, testing::Values(Space::plane, Space::axis
                          });
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

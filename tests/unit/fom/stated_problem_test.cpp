@@ -1,19 +1,18 @@
 // Scenes that state their domain, bodies and conditions: what becomes of them.
-#include "fom/stated_problem.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "base/error.hpp"
-#include "base/units.hpp"
-#include "fom/io/text_file.hpp"
+#include "fom/levels/scene_problem.hpp"
 #include "fom/scene/expression.hpp"
+#include "fom/scene/general_problem.hpp"
 #include "fom/scene/scene_file.hpp"
-#include "fom/scene_problem.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
+#include "rom/base/units.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 /// A channel of 40 x 10 mm with a round hole and a square body that is held to the left of x = 21 mm.
@@ -164,4 +163,4 @@ TEST(Expression, KnowsItsVariablesConstantsAndFunctions) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

@@ -8,7 +8,7 @@
 #include "fom/thin_gap/plate.hpp"
 #include "fom/thin_gap/step_energy.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 ThinGapSettings contact_settings() {
@@ -195,4 +195,4 @@ TEST(PlateForces, DeriveFromTheirEnergy) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

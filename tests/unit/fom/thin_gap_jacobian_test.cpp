@@ -8,7 +8,7 @@
 #include "fom/thin_gap/contact_law.hpp"
 #include "fom/thin_gap/step_equations.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 struct JacobianCase {
@@ -146,4 +146,4 @@ INSTANTIATE_TEST_SUITE_P(States, ThinGapJacobian,
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

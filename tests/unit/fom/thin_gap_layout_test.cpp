@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "fom/thin_gap/layout.hpp"
-#include "geometry/profile_scale.hpp"
-#include "geometry/pump.hpp"
+#include "geometry/wave_pump/profile_scale.hpp"
+#include "geometry/wave_pump/pump.hpp"
+#include "rom/base/error.hpp"
 #include "tests/unit/geometry/simple_pump.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -125,4 +125,4 @@ TEST(ThinGapLayout, RefusesAProfileWithoutItsParts) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

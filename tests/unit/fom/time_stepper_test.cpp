@@ -1,11 +1,11 @@
 // Time stepping of a small coupled problem: constraints, restart, ranks.
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/verification/support/channel_problem.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using namespace verification;
@@ -152,4 +152,4 @@ TEST(TimeStepperMpi, AgreesWithOneRank) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

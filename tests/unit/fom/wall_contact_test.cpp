@@ -4,7 +4,7 @@
 
 #include "tests/verification/support/solid_meshes.hpp"
 
-namespace undula {
+namespace undula::fom {
 namespace {
 
 using verification::box;
@@ -86,4 +86,4 @@ TEST(PrepareContact, LeavesOutWhereASolidIsAttached) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::fom

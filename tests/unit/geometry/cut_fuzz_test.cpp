@@ -8,10 +8,10 @@
 #include <map>
 #include <random>
 
-#include "base/error.hpp"
 #include "cut_invariants.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 using namespace test;
@@ -374,4 +374,4 @@ TEST(CutFuzz, RepeatedCutsOfOneBackgroundEqualFreshOnes) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

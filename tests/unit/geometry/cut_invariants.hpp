@@ -10,8 +10,8 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/box_grid.hpp"
-#include "geometry/cut.hpp"
+#include "geometry/cut/cut.hpp"
+#include "geometry/mesh/box_grid.hpp"
 
 namespace undula::test {
 

@@ -1,15 +1,15 @@
-#include "geometry/cut.hpp"
+#include "geometry/cut/cut.hpp"
 
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <fstream>
 #include <random>
 
-#include "base/error.hpp"
 #include "cut_invariants.hpp"
-#include "geometry/cut_reproducer.hpp"
+#include "geometry/cut/cut_reproducer.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 using namespace test;
@@ -371,4 +371,4 @@ TEST(Cut, ThreeDimensionsByTheSameCode) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

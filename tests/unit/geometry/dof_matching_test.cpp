@@ -1,14 +1,14 @@
 // The matching of unknowns from one cut to the next, against the side of the plate each of them stands on.
-#include "geometry/dof_matching.hpp"
+#include "geometry/cut/dof_matching.hpp"
 
 #include <random>
 #include <set>
 
-#include "base/error.hpp"
 #include "cut_invariants.hpp"
-#include "geometry/part_lookup.hpp"
+#include "geometry/cut/part_lookup.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 using namespace test;
@@ -240,4 +240,4 @@ TEST(PartLookup, FindsThePartOfAPoint) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

@@ -3,7 +3,7 @@
 
 #include "cut_invariants.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 using namespace test;
@@ -111,4 +111,4 @@ TEST(DofSets, PartsThatMeetInAPointOnlyAreSeparate) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

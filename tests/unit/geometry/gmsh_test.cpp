@@ -7,11 +7,11 @@
 #include <map>
 #include <string>
 
-#include "base/error.hpp"
-#include "geometry/gmsh_import.hpp"
-#include "geometry/mesh_quality.hpp"
+#include "geometry/mesh/gmsh_import.hpp"
+#include "geometry/mesh/mesh_quality.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 const std::filesystem::path fixtures = std::filesystem::path(UNDULA_SOURCE_DIR) /
@@ -166,4 +166,4 @@ TEST(Gmsh, RefusesFlatCellsAndUnknownNodes) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

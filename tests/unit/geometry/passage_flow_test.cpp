@@ -1,5 +1,5 @@
 // Potential flow through channels of known inertance.
-#include "geometry/passage_flow.hpp"
+#include "geometry/mesh/passage_flow.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 #include "tests/verification/support/rectangle_mesh.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 using verification::spaced;
@@ -94,4 +94,4 @@ TEST(PassageFlow, SaysWhatIsMissing) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

@@ -1,4 +1,4 @@
-#include "geometry/polygon_mesh.hpp"
+#include "geometry/mesh/polygon_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <map>
 #include <numbers>
 
-#include "base/error.hpp"
-#include "geometry/mesh_quality.hpp"
+#include "geometry/mesh/mesh_quality.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 /// An L of area 3 with a line across.
@@ -178,4 +178,4 @@ TEST(PolygonMesh, KeepsPathsInsideAsEdges) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

@@ -1,5 +1,5 @@
 // Scaled gaps of a profile: the factors hold at every radius, and nothing else moves.
-#include "geometry/profile_scale.hpp"
+#include "geometry/wave_pump/profile_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 #include "simple_pump.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 PumpProfile wave_pump() {
@@ -165,4 +165,4 @@ TEST(ProfileScale, RefusesWhatTheWallsDoNotBear) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

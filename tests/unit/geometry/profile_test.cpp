@@ -1,4 +1,4 @@
-#include "geometry/profile.hpp"
+#include "geometry/wave_pump/profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <set>
 #include <string>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 #include "simple_pump.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 const std::filesystem::path source = UNDULA_SOURCE_DIR;
@@ -151,4 +151,4 @@ TEST(Profile, EveryBadProfileIsRefusedWithItsLine) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

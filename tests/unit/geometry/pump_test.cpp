@@ -1,4 +1,4 @@
-#include "geometry/pump.hpp"
+#include "geometry/wave_pump/pump.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <random>
 #include <set>
 
-#include "base/error.hpp"
-#include "geometry/mesh_quality.hpp"
+#include "geometry/mesh/mesh_quality.hpp"
+#include "rom/base/error.hpp"
 #include "simple_pump.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 PumpProfile wave_pump() {
@@ -184,4 +184,4 @@ TEST(Pump, MagnetIsMeshedFromEitherOrientation) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

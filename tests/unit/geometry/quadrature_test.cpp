@@ -1,12 +1,12 @@
-#include "geometry/quadrature.hpp"
+#include "geometry/mesh/quadrature.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 // Integral of prod lambda_i^(a_i) over the simplex of measure 1: n! prod a_i! / (n + sum a_i)!.
@@ -90,4 +90,4 @@ TEST(Quadrature, TakesTheMeasureOfTheSimplexInSpace) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

@@ -1,9 +1,9 @@
 // A pump of right angles, whose gaps are known exactly.
 #pragma once
 
-#include "geometry/profile.hpp"
+#include "geometry/wave_pump/profile.hpp"
 
-namespace undula {
+namespace undula::geometry {
 
 /// Gaps: 0.4 above and below the membrane, 0.1 at its rim, 0.3 between magnet and stator, 0.5 between housing
 /// and stator at the top (all cm).
@@ -20,4 +20,4 @@ inline PumpProfile simple_pump() {
   return profile;
 }
 
-} // namespace undula
+} // namespace undula::geometry

@@ -1,10 +1,10 @@
-#include "geometry/simplex_mesh.hpp"
+#include "geometry/mesh/simplex_mesh.hpp"
 
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 SimplexMesh<2> two_triangles() {
@@ -93,4 +93,4 @@ TEST(SimplexMesh, BarycentricCoordinatesReproduceLinearFunctions) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

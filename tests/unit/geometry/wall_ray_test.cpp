@@ -1,11 +1,11 @@
 // Vertical rays from the membrane to the walls.
-#include "geometry/wall_ray.hpp"
+#include "geometry/wave_pump/wall_ray.hpp"
 
 #include <gtest/gtest.h>
 
 #include "simple_pump.hpp"
 
-namespace undula {
+namespace undula::geometry {
 namespace {
 
 void expect_wall(double r, double z, bool up, double expected_z, FluidOutline::Curve curve) {
@@ -48,4 +48,4 @@ TEST(FirstWall, IsEmptyWhereThereIsNone) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::geometry

@@ -1,8 +1,8 @@
-#include "condense.hpp"
+#include "rom/fixed_domain/condense.hpp"
 
 #include <gtest/gtest.h>
 
-#include "periodic.hpp"
+#include "rom/fixed_domain/periodic.hpp"
 #include "synthetic_operators.hpp"
 
 namespace undula::rom {

@@ -1,13 +1,13 @@
-#include "hq_curve.hpp"
+#include "rom/curve/hq_curve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "base/error.hpp"
-#include "base/units.hpp"
-#include "continuation.hpp"
-#include "error_estimate.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/units.hpp"
+#include "rom/curve/error_estimate.hpp"
+#include "rom/fixed_domain/continuation.hpp"
 #include "synthetic_operators.hpp"
 
 namespace undula::rom {

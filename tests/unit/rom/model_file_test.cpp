@@ -6,8 +6,8 @@
 #include <fstream>
 #include <limits>
 
-#include "base/error.hpp"
-#include "base/hdf5_file.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_file.hpp"
 #include "synthetic_operators.hpp"
 
 namespace undula::rom {

@@ -1,11 +1,11 @@
-#include "periodic.hpp"
+#include "rom/fixed_domain/periodic.hpp"
 
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
-#include "gmres.hpp"
+#include "rom/base/error.hpp"
+#include "rom/fixed_domain/gmres.hpp"
+#include "rom/fixed_domain/time_march.hpp"
 #include "synthetic_operators.hpp"
-#include "time_march.hpp"
 
 namespace undula::rom {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "model.hpp"
+#include "rom/fixed_domain/model.hpp"
 
 namespace undula::rom {
 

@@ -1,11 +1,11 @@
-#include "time_march.hpp"
+#include "rom/fixed_domain/time_march.hpp"
 
 #include <gtest/gtest.h>
 
 #include <complex>
 #include <numbers>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 #include "synthetic_operators.hpp"
 
 namespace undula::rom {

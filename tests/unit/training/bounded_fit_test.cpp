@@ -1,15 +1,15 @@
 // Least squares within bounds, and what the Jacobian says of the parameters.
-#include "training/bounded_fit.hpp"
+#include "training/calibration/bounded_fit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
-#include "training/identifiability.hpp"
+#include "rom/base/error.hpp"
+#include "training/calibration/identifiability.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 using Eigen::MatrixXd;
@@ -151,4 +151,4 @@ TEST(Identifiability, FewerResidualsThanParametersFixNotAll) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

@@ -1,16 +1,16 @@
 // Calibration of a coarse thin-gap pump against curves that the same level computed: what was put in has to
 // come out.
-#include "training/calibrate.hpp"
+#include "training/calibration/calibrate.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/error.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_value.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 Scene coarse_pump() {
@@ -109,4 +109,4 @@ TEST(Calibrate, FreeKeysAreChecked) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

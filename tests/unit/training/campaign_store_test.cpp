@@ -1,4 +1,4 @@
-#include "training/campaign_store.hpp"
+#include "training/campaign/campaign_store.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -11,10 +11,10 @@
 #include <random>
 #include <thread>
 
-#include "base/error.hpp"
-#include "training/run_record_file.hpp"
+#include "rom/base/error.hpp"
+#include "training/campaign/run_record_file.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 using namespace std::chrono_literals;
@@ -297,4 +297,4 @@ TEST(CampaignStamp, DependsOnWhatShapesTheRecordsOnly) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

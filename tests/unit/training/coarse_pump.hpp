@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "fom/scene/scene_file.hpp"
+#include "training/training.hpp"
 
-namespace undula {
+namespace undula::training {
 
 inline Scene coarse_pump(std::vector<std::string> overrides = {}) {
   std::vector<std::string> all = {
@@ -16,4 +17,4 @@ inline Scene coarse_pump(std::vector<std::string> overrides = {}) {
   return read_scene(UNDULA_SOURCE_DIR "/data/scenes/wave_pump_fixed.toml", all);
 }
 
-} // namespace undula
+} // namespace undula::training

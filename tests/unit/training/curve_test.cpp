@@ -1,13 +1,13 @@
 // What a run comes to as a point of a curve.
-#include "training/curve.hpp"
+#include "training/campaign/curve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/units.hpp"
+#include "rom/base/units.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 /// Four periods with outflows 4, 1, 2, 3 l/min.
@@ -63,4 +63,4 @@ TEST(CurvePoint, OfAFailedRunHasNoFlow) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

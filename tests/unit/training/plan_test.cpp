@@ -1,4 +1,4 @@
-#include "training/plan.hpp"
+#include "training/sampling/plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <set>
 #include <tuple>
 
-#include "base/error.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 TrainingPlan pump_box(int training, int held_out) {
@@ -157,4 +157,4 @@ TEST(Plan, RefusesEmptyBoxesAndImpossibleCounts) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

@@ -1,4 +1,4 @@
-#include "training/pod.hpp"
+#include "training/reduction/pod.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <random>
 #include <vector>
 
-#include "base/error.hpp"
-#include "fom/petsc/handles.hpp"
+#include "fom/system/handles.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 using Eigen::MatrixXd;
@@ -191,4 +191,4 @@ TEST(PodMpi, AgreesWithOneRank) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

@@ -1,17 +1,17 @@
-#include "training/projection.hpp"
+#include "training/reduction/projection.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "base/units.hpp"
 #include "coarse_pump.hpp"
-#include "fom/pump_problem.hpp"
-#include "periodic.hpp"
-#include "training/judge.hpp"
-#include "training/periodic_run.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "rom/base/units.hpp"
+#include "rom/fixed_domain/periodic.hpp"
+#include "training/campaign/periodic_run.hpp"
+#include "training/reduction/judge.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 /// Random columns on the free unknowns of each field.
@@ -149,4 +149,4 @@ TEST(PeriodicRun, ExtrapolatedStateIsTheLimitOfTheMarch) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

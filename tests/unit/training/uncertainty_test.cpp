@@ -1,17 +1,17 @@
 // Tolerances of a scene as a band of its curve, with functions whose band is known.
-#include "training/uncertainty.hpp"
+#include "training/calibration/uncertainty.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "base/error.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_tolerance.hpp"
 #include "fom/scene/scene_value.hpp"
+#include "rom/base/error.hpp"
 
-namespace undula {
+namespace undula::training {
 namespace {
 
 constexpr const char* stroke = "operating_point.stroke_mm";
@@ -123,4 +123,4 @@ TEST(Uncertainty, ASceneWithoutTolerancesIsToldWhatToWrite) {
 }
 
 } // namespace
-} // namespace undula
+} // namespace undula::training

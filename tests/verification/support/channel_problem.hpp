@@ -3,8 +3,9 @@
 
 #include <numbers>
 
-#include "fom/pump_problem.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 #include "tests/verification/support/default_weights.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

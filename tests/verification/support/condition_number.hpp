@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fom/system/operators.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

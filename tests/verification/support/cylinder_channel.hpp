@@ -2,7 +2,8 @@
 // 0.2), density 1, viscosity 0.001.
 #pragma once
 
-#include "fom/problem.hpp"
+#include "fom/problem/problem.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/rectangle_mesh.hpp"
 
 namespace undula::verification {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fom/scene/scene_table.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

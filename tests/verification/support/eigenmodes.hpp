@@ -7,8 +7,9 @@
 #include <complex>
 #include <vector>
 
-#include "fom/petsc/handles.hpp"
+#include "fom/system/handles.hpp"
 #include "fom/system/operators.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

@@ -5,6 +5,7 @@
 
 #include "fom/assembly/part_quadrature.hpp"
 #include "tests/verification/support/manufactured.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

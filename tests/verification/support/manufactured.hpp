@@ -3,7 +3,8 @@
 
 #include <functional>
 
-#include "fom/problem.hpp"
+#include "fom/problem/problem.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/taylor.hpp"
 
 namespace undula::verification {

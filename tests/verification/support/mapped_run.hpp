@@ -4,7 +4,8 @@
 #include <functional>
 
 #include "fom/mapping/domain_extension.hpp"
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

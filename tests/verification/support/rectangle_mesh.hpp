@@ -6,7 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/simplex_mesh.hpp"
+#include "geometry/mesh/simplex_mesh.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

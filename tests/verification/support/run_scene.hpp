@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "fom/io/series_statistics.hpp"
-#include "fom/level.hpp"
+#include "fom/levels/level.hpp"
+#include "fom/output/series_statistics.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

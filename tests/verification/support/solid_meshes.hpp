@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "fom/space/discretisation.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/rectangle_mesh.hpp"
 
 namespace undula::verification {

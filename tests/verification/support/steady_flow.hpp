@@ -4,8 +4,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "fom/time_stepper.hpp"
+#include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/flow_errors.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/rectangle_mesh.hpp"
 
 namespace undula::verification {

@@ -7,6 +7,7 @@
 
 #include "fom/thin_gap/layout.hpp"
 #include "fom/thin_gap/plate.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

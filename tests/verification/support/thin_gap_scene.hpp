@@ -6,6 +6,7 @@
 
 #include "fom/scene/scene_file.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
+#include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
 

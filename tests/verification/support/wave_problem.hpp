@@ -6,6 +6,7 @@
 #include "fom/system/operators.hpp"
 #include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/membrane_wave.hpp"
+#include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {

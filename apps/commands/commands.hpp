@@ -1,0 +1,17 @@
+// The subcommands of undula. Each function adds one to the command line; its work is done when the line is
+// parsed.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace undula::apps {
+
+void add_check_command(CLI::App& app);
+void add_solve_command(CLI::App& app);
+void add_train_command(CLI::App& app);
+void add_hq_command(CLI::App& app);
+void add_validate_command(CLI::App& app);
+void add_calibrate_command(CLI::App& app);
+void add_report_command(CLI::App& app);
+
+} // namespace undula::apps

@@ -1,0 +1,212 @@
+// undula solve scene.toml: one full-order run.
+//   undula solve data/scenes/wave_pump_fixed.toml --output run --plot
+//   undula solve data/scenes/wave_pump_fixed.toml --output run --restart --set time.periods=20
+//   undula solve data/scenes/wave_pump_thin_gap.toml --output run --plot
+//   undula solve data/scenes/cylinder_2d1.toml --output run --plot --set domain.size_mm=10
+//   mpirun -np 2 undula solve data/scenes/wave_pump_fixed.toml --output run --json -- -log_view
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/apps.hpp"
+#include "apps/commands/commands.hpp"
+#include "apps/mpi_session.hpp"
+#include "apps/output/progress.hpp"
+#include "apps/output/solve_plots.hpp"
+#include "apps/output/text_table.hpp"
+#include "fom/levels/level.hpp"
+#include "fom/levels/scene_problem.hpp"
+#include "fom/output/root_rank.hpp"
+#include "fom/output/run_directory.hpp"
+#include "fom/output/series_statistics.hpp"
+#include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_reference.hpp"
+#include "rom/base/error.hpp"
+
+namespace undula::apps {
+namespace {
+
+struct SolveOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string output;
+  bool restart = false;
+  bool force = false;
+  bool plot = false;
+  bool json = false;
+  std::vector<std::string> petsc;
+};
+
+struct SolvedRun {
+  std::string scene, hash, folder;
+  int unknowns = 0, ranks = 1;
+  int first_step = 0, last_step = 0;        ///< of this process; the run itself begins at rest
+  std::vector<PeriodSummary> periods;       ///< of a pump
+  std::vector<ColumnStatistics> statistics; ///< of a scene that states its problem
+};
+
+SolvedRun summary(const Scene& scene, const RunDirectory& output, int unknowns, int ranks, int first_step,
+                  int last_step) {
+  SolvedRun run = {
+      scene.name, scene_hash(scene), output.folder().string(), unknowns, ranks, first_step, last_step, {},
+      {}};
+  if (scene.problem.stated) {
+    run.statistics = series_statistics(output.series(), scene.output.statistics_from);
+  } else {
+    run.periods = summarise_periods(output.series(), scene.time.steps_per_period);
+  }
+  return run;
+}
+
+std::string statistics_text(const std::vector<ColumnStatistics>& statistics) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ColumnStatistics& one : statistics) {
+    rows.push_back({one.column, shortest(one.last), shortest(one.mean), shortest(one.amplitude),
+                    one.oscillations == 0 ? "-" : shortest(one.frequency_Hz)});
+  }
+  return text_table({"column", "last", "mean", "amplitude", "frequency (Hz)"}, rows);
+}
+
+std::string table_text(const SolvedRun& run) {
+  if (!run.statistics.empty()) {
+    return statistics_text(run.statistics);
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const PeriodSummary& period : run.periods) {
+    rows.push_back({std::to_string(period.period), decimals(period.outflow_l_per_min, 4),
+                    decimals(period.inflow_l_per_min, 4), decimals(period.spread_l_per_min, 3),
+                    decimals(100 * period.energy_gap, 3), decimals(period.speed_max_cm_per_s, 1),
+                    decimals(period.clearance_min_mm, 4)});
+  }
+  return text_table({"period", "outflow (l/min)", "inflow (l/min)", "spread (l/min)", "energy gap (%)",
+                     "max speed (cm/s)", "min clearance (mm)"},
+                    rows);
+}
+
+std::string json_text(const SolvedRun& run, const PhaseTimer& timer) {
+  nlohmann::ordered_json result = {{"scene", run.scene},
+                                   {"hash", run.hash},
+                                   {"output", run.folder},
+                                   {"unknowns", run.unknowns},
+                                   {"ranks", run.ranks},
+                                   {"first_step", run.first_step},
+                                   {"last_step", run.last_step},
+                                   {"periods", nlohmann::ordered_json::array()},
+                                   {"phases", nlohmann::ordered_json::object()}};
+  for (const PeriodSummary& period : run.periods) {
+    result["periods"].push_back({{"period", period.period},
+                                 {"outflow_l_per_min", period.outflow_l_per_min},
+                                 {"inflow_l_per_min", period.inflow_l_per_min},
+                                 {"spread_l_per_min", period.spread_l_per_min},
+                                 {"input_power_mW", period.input_power_mW},
+                                 {"energy_gap", period.energy_gap},
+                                 {"speed_max_cm_per_s", period.speed_max_cm_per_s},
+                                 {"clearance_min_mm", period.clearance_min_mm}});
+  }
+  for (const ColumnStatistics& one : run.statistics) {
+    result["statistics"][one.column] = {{"last", one.last},
+                                        {"mean", one.mean},
+                                        {"amplitude", one.amplitude},
+                                        {"frequency_Hz", one.frequency_Hz},
+                                        {"oscillations", one.oscillations}};
+  }
+  for (const auto& [phase, record] : timer.records()) {
+    result["phases"][phase] = {{"seconds", record.seconds}, {"calls", record.calls}};
+  }
+  return result.dump(2) + "\n";
+}
+
+void solve(const SolveOptions& options, MPI_Comm comm) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+
+  // 1. Read the scene; refuse what would be refused later.
+  const Scene scene = read_scene(options.scene, options.overrides);
+  check_checkpoint_interval(scene);
+  const std::string folder = options.output.empty() ? scene.name + "_run" : options.output;
+  const ExistingRun existing = options.restart ? ExistingRun::go_on
+                               : options.force ? ExistingRun::replace
+                                               : ExistingRun::refuse;
+  on_root(comm, [&] { check_run_directory(folder, scene, existing); });
+
+  // 2. Prepare what the scene's level needs: meshes, cut, operators, or coefficients.
+  PhaseTimer timer;
+  PreparedLevel level = prepare_level(scene, comm, timer);
+
+  // 3. The output, and the state to go on from.
+  State state = initial_state(level);
+  std::optional<RunDirectory> output; // on rank 0
+  on_root(comm, [&] {
+    const auto scope = timer.measure("output");
+    output.emplace(folder, view_level(level, scene), scene, existing, ranks, state);
+    if (options.restart) {
+      spdlog::info("{} goes on from step {}", folder, state.step);
+    }
+  });
+  broadcast_state(comm, state);
+  const int first_step = state.step;
+
+  // 4. March. Where the numerics fail, the last good state stays.
+  const int steps = last_step(scene) - first_step;
+  try {
+    std::optional<Progress> progress;
+    if (rank == 0) {
+      progress.emplace("solve", std::max(steps, 0));
+    }
+    march(level, scene, state, timer, [&](const State& now, const Observation& seen) {
+      const auto scope = timer.measure("output");
+      on_root(comm, [&] {
+        output->record(now, seen);
+        progress->update(now.step - first_step);
+      });
+    });
+  } catch (const NumericsError&) {
+    if (rank == 0) {
+      spdlog::error("stopped; the last good state, step {}, is kept in {}", state.step,
+                    output->save_state(state).string());
+    }
+    throw;
+  }
+
+  // 5. Write.
+  on_root(comm, [&] {
+    output->finish(state, timer);
+    const SolvedRun run = summary(scene, *output, unknowns(level), ranks, first_step, state.step);
+    if (scene.coupling == Coupling::fixed && !run.periods.empty() &&
+        run.periods.back().clearance_min_mm < 0) {
+      spdlog::warn(
+          "the membrane passes through a wall, which fixed coupling does not feel; "
+          "the geometry is that of rest");
+    }
+    std::cout << (options.json ? json_text(run, timer) : table_text(run));
+    if (options.plot) {
+      plot_run(*output, scene, state);
+    }
+  });
+}
+
+} // namespace
+
+void add_solve_command(CLI::App& app) {
+  auto options = std::make_shared<SolveOptions>();
+  CLI::App* command = app.add_subcommand("solve", "Run the full-order model of a scene");
+  command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command->add_option("--set", options->overrides, "override a key: section.key=value, may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--output", options->output, "folder for everything the run writes; default NAME_run");
+  CLI::Option* restart =
+      command->add_flag("--restart", options->restart, "go on from the newest checkpoint in the folder");
+  command->add_flag("--force", options->force, "replace a run that is in the folder")->excludes(restart);
+  command->add_flag("--plot", options->plot, "draw pictures of the flow and the membrane into the folder");
+  command->add_flag("--json", options->json, "print JSON");
+  command->add_option("petsc", options->petsc, "options for PETSc, after --");
+  command->footer(scene_keys_help());
+  command->callback(
+      [options] { run_parallel(options->petsc, [&](MPI_Comm comm) { solve(*options, comm); }); });
+}
+
+} // namespace undula::apps

@@ -1,0 +1,221 @@
+// undula train scene.toml: full-order runs over the box of the scene, and the reduced model made from them.
+//   undula train data/scenes/wave_pump_fixed.toml --output model.h5
+//   mpirun -np 2 undula train data/scenes/wave_pump_fixed.toml --output model.h5 --campaign runs
+//   undula train data/scenes/wave_pump_fixed.toml --campaign runs --output model.h5 --json
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/apps.hpp"
+#include "apps/commands/commands.hpp"
+#include "apps/mpi_session.hpp"
+#include "apps/output/progress.hpp"
+#include "apps/output/text_table.hpp"
+#include "fom/levels/scene_problem.hpp"
+#include "fom/output/provenance.hpp"
+#include "fom/output/root_rank.hpp"
+#include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_reference.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/units.hpp"
+#include "training/campaign/campaign.hpp"
+#include "training/reduction/build_model.hpp"
+
+namespace undula::apps {
+namespace {
+
+struct TrainOptions {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string output;
+  std::string campaign;
+  bool json = false;
+  std::vector<std::string> petsc;
+};
+
+std::string point_text(const OperatingPoint& point) {
+  return shortest(point.frequency) + " Hz, " + shortest(units::length_to_mm(point.stroke)) + " mm, " +
+         shortest(units::pressure_to_mmHg(point.head)) + " mmHg";
+}
+
+std::string mode_text(const TrainedModel& trained) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ModeRow& row : trained.modes) {
+    rows.push_back({std::to_string(row.velocity_modes) + "+" + std::to_string(row.supremizers),
+                    std::to_string(row.pressure_modes), std::to_string(row.displacement_modes),
+                    decimals(units::flow_to_l_per_min(row.flow_worst), 4),
+                    decimals(100 * row.flow_worst / trained.flow_range, 3),
+                    decimals(100 * row.velocity_mean, 3), decimals(100 * row.velocity_worst, 3),
+                    decimals(100 * row.best_velocity_worst, 3), decimals(100 * row.envelope_worst, 3),
+                    decimals(row.milliseconds, 2), std::to_string(row.not_converged)});
+  }
+  return text_table({"velocity modes", "pressure", "displacement", "flow, worst (l/min)", "of the range (%)",
+                     "velocity, mean (%)", "worst (%)", "basis, worst (%)", "envelope, worst (%)",
+                     "ms per point", "not converged"},
+                    rows);
+}
+
+std::string run_text(const TrainedModel& trained) {
+  std::vector<std::vector<std::string>> rows;
+  for (const rom::ReferencePoint& run : trained.model.references) {
+    rows.push_back({run.held_out ? "held out" : "training", shortest(run.frequency_Hz),
+                    decimals(run.stroke_mm, 3), decimals(run.head_mmHg, 2), decimals(run.flow_l_per_min, 4),
+                    decimals(run.rom_flow_l_per_min, 4), decimals(100 * run.velocity_error, 3),
+                    decimals(100 * run.envelope_error, 3), decimals(run.fom_seconds, 1)});
+  }
+  return text_table({"run", "f (Hz)", "stroke (mm)", "head (mmHg)", "flow FOM (l/min)", "flow ROM (l/min)",
+                     "velocity error (%)", "envelope error (%)", "FOM (s)"},
+                    rows);
+}
+
+nlohmann::ordered_json to_json(const TrainedModel& trained, const std::string& file) {
+  nlohmann::ordered_json result = {{"model", file},
+                                   {"flow_range_l_per_min", units::flow_to_l_per_min(trained.flow_range)},
+                                   {"error_safety", trained.model.error_safety},
+                                   {"error_floor_l_per_min", trained.model.error_floor_l_per_min},
+                                   {"left_out", trained.left_out},
+                                   {"modes", nlohmann::ordered_json::array()},
+                                   {"runs", nlohmann::ordered_json::array()}};
+  for (const ModeRow& row : trained.modes) {
+    result["modes"].push_back({{"velocity_modes", row.velocity_modes},
+                               {"supremizers", row.supremizers},
+                               {"pressure_modes", row.pressure_modes},
+                               {"displacement_modes", row.displacement_modes},
+                               {"flow_worst_l_per_min", units::flow_to_l_per_min(row.flow_worst)},
+                               {"velocity_mean", row.velocity_mean},
+                               {"velocity_worst", row.velocity_worst},
+                               {"best_velocity_worst", row.best_velocity_worst},
+                               {"envelope_worst", row.envelope_worst},
+                               {"milliseconds", row.milliseconds},
+                               {"not_converged", row.not_converged}});
+  }
+  for (const rom::ReferencePoint& run : trained.model.references) {
+    result["runs"].push_back({{"held_out", run.held_out},
+                              {"frequency_Hz", run.frequency_Hz},
+                              {"stroke_mm", run.stroke_mm},
+                              {"head_mmHg", run.head_mmHg},
+                              {"flow_l_per_min", run.flow_l_per_min},
+                              {"rom_flow_l_per_min", run.rom_flow_l_per_min},
+                              {"velocity_error", run.velocity_error},
+                              {"envelope_error", run.envelope_error},
+                              {"fom_seconds", run.fom_seconds}});
+  }
+  return result;
+}
+
+void train(const TrainOptions& options, MPI_Comm comm) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+
+  // 1. The scene, the plan, and the folder of the runs.
+  const Scene scene = read_scene(options.scene, options.overrides);
+  require_pump(scene, "undula train");
+  if (scene.space == Space::thin_gap) {
+    throw InputError("a thin-gap scene needs no reduced model", "model.space = \"thin-gap\"",
+                     "undula hq on the scene itself, which takes seconds; or a scene of finite elements",
+                     scene.file.string() + ", section [model]");
+  }
+  if (scene.coupling != Coupling::fixed) {
+    throw InputError("a reduced model is projected from operators that never change",
+                     "a model.coupling that moves the fluid's domain", "coupling = \"fixed\"",
+                     scene.file.string() + ", section [model]");
+  }
+  if (scene.solid_model != SolidModel::linear) {
+    throw InputError("a reduced model is projected from linear operators of the solid",
+                     "a model.solid with a nonlinear law", "solid = \"linear\"",
+                     scene.file.string() + ", section [model]");
+  }
+  if (scene.operating_point.stroke_scale != 1) {
+    throw InputError("a campaign states the stroke that the holder makes",
+                     "operating_point.stroke_scale = " + shortest(scene.operating_point.stroke_scale),
+                     "1; ask the reduced model for the scaled stroke instead",
+                     scene.file.string() + ", section [operating_point]");
+  }
+  const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
+  const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
+  const SamplingPlan plan = plan_samples(scene.training);
+  std::vector<OperatingPoint> points = plan.training;
+  points.insert(points.end(), plan.held_out.begin(), plan.held_out.end());
+  std::optional<CampaignStore> store;
+  on_root(comm, [&] {
+    store.emplace(folder, stamp_campaign(scene));
+    for (const std::string& message : store->status(points).damaged) {
+      spdlog::warn("{}", message);
+    }
+  });
+  if (rank != 0) {
+    store.emplace(folder, stamp_campaign(scene));
+  }
+
+  // 2. The full-order runs that are not there yet.
+  {
+    std::optional<Progress> progress;
+    if (rank == 0) {
+      progress.emplace("train", static_cast<long>(points.size()));
+    }
+    run_campaign(scene, points, *store, comm, [&](const RunRecord& run, std::size_t done, std::size_t total) {
+      if (progress) {
+        progress->update(static_cast<long>(done));
+      }
+      const std::string outcome =
+          run.state == RunState::periodic
+              ? "periodic after " + std::to_string(run.cycles.periods.size()) + " periods"
+              : run.reason;
+      spdlog::info("{}/{}  {}: {} ({} s)", done, total, point_text(run.point), outcome,
+                   decimals(run.seconds.at("total"), 1));
+    });
+    MPI_Barrier(comm);
+  }
+
+  // 3. The reduced model, by one rank, unless another process still computes.
+  on_root(comm, [&] {
+    const auto pending = store->status(points).pending;
+    if (!pending.empty()) {
+      spdlog::warn("{} points are being computed by other processes: call again when they have ended",
+                   pending.size());
+      return;
+    }
+    PhaseTimer timer;
+    TrainedModel trained = build_model(scene, plan, *store, timer);
+    trained.model.provenance = provenance(ranks);
+    trained.model.provenance["scene"] = scene_to_toml(scene);
+    trained.model.provenance["scene_hash"] = scene_hash(scene);
+    rom::save_model(trained.model, output);
+    for (const std::string& message : trained.left_out) {
+      spdlog::warn("left out, not periodic: {}", message);
+    }
+    if (options.json) {
+      std::cout << to_json(trained, output).dump(2) << "\n";
+      return;
+    }
+    std::cout << run_text(trained) << "\nheld-out runs, by size of the model:\n"
+              << mode_text(trained)
+              << "\nflow range of the box: " << decimals(units::flow_to_l_per_min(trained.flow_range), 3)
+              << " l/min\nwritten: " << output << "\n";
+  });
+}
+
+} // namespace
+
+void add_train_command(CLI::App& app) {
+  auto options = std::make_shared<TrainOptions>();
+  CLI::App* command =
+      app.add_subcommand("train", "Run the full-order model over a box and make a reduced model from it");
+  command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command->add_option("--set", options->overrides, "override a key: section.key=value, may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--output", options->output, "model file to write; default NAME.h5");
+  command->add_option("--campaign", options->campaign,
+                      "folder of the full-order runs, resumed if it exists; default OUTPUT.runs");
+  command->add_flag("--json", options->json, "print JSON");
+  command->add_option("petsc", options->petsc, "options for PETSc, after --");
+  command->footer(scene_keys_help());
+  command->callback(
+      [options] { run_parallel(options->petsc, [&](MPI_Comm comm) { train(*options, comm); }); });
+}
+
+} // namespace undula::apps

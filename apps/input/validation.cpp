@@ -1,0 +1,23 @@
+#include "apps/input/validation.hpp"
+
+#include <cmath>
+
+namespace undula::apps {
+
+Validation validate(const MeasuredCurve& curve, std::span<const double> heads_mmHg,
+                    const FlowAtHead& flow_at) {
+  Validation validation;
+  double to_fit = 0;
+  double to_nearest = 0;
+  for (const ExtractedPoint& measured : extract_points(curve, heads_mmHg)) {
+    const double computed = flow_at(measured.head_mmHg);
+    to_fit += std::pow(computed - measured.fit_l_per_min, 2);
+    to_nearest += std::pow(computed - measured.nearest_l_per_min, 2);
+    validation.points.push_back({measured, computed});
+  }
+  validation.norm_to_fit_l_per_min = std::sqrt(to_fit);
+  validation.norm_to_nearest_l_per_min = std::sqrt(to_nearest);
+  return validation;
+}
+
+} // namespace undula::apps

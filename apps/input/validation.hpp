@@ -1,0 +1,33 @@
+// The benchmark's algorithm: compare a model with a measured curve at a few heads.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "apps/input/measured_curve.hpp"
+
+namespace undula::apps {
+
+/// Flow (l/min, mean over the last period) that a model gives at a head (mmHg).
+using FlowAtHead = std::function<double(double head_mmHg)>;
+
+/// One compared head; flows in l/min.
+struct ValidatedPoint {
+  ExtractedPoint measured;
+  double computed_l_per_min = 0;
+};
+
+/// A comparison. The norm is sqrt(sum (computed - measured)^2) in l/min, as the benchmark reports it.
+struct Validation {
+  std::vector<ValidatedPoint> points;
+  double norm_to_fit_l_per_min = 0;     ///< measured = the quadratic fit
+  double norm_to_nearest_l_per_min = 0; ///< measured = the nearest sample
+};
+
+/// Runs the model once per head, in the order given, and compares.
+/// Throws InputError for heads outside the measured range, before anything is run.
+Validation validate(const MeasuredCurve& curve, std::span<const double> heads_mmHg,
+                    const FlowAtHead& flow_at);
+
+} // namespace undula::apps

@@ -1,0 +1,87 @@
+#include "apps/output/gnuplot.hpp"
+
+#include <spawn.h>
+#include <spdlog/spdlog.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
+
+namespace undula::apps {
+namespace {
+
+/// Exit status of `gnuplot -e setting script` in a folder; 127 if gnuplot cannot be started.
+int run_gnuplot(const std::filesystem::path& folder, const std::string& setting, const std::string& script) {
+  std::array<std::string, 4> words = {"gnuplot", "-e", setting, script};
+  std::array<char*, 5> arguments = {words[0].data(), words[1].data(), words[2].data(), words[3].data(),
+                                    nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  pid_t child = 0;
+  const int failed = posix_spawnp(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) {
+    return 127;
+  }
+  int status = 0;
+  if (waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
+    return 126;
+  }
+  return WEXITSTATUS(status);
+}
+
+} // namespace
+
+std::string gnuplot_string(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    quoted += c == '\'' ? "''" : std::string(1, c);
+  }
+  return quoted + "'";
+}
+
+void check_picture_name(const std::filesystem::path& picture) {
+  if (picture.extension() != ".png" || picture.stem().empty()) {
+    throw InputError("the picture has a name of another format", '"' + picture.string() + '"',
+                     "a name that ends in .png", "--plot");
+  }
+  if (!std::filesystem::is_directory(std::filesystem::absolute(picture).parent_path())) {
+    throw InputError("the folder of the picture does not exist", '"' + picture.string() + '"',
+                     "an existing folder", "--plot");
+  }
+}
+
+bool draw_picture(const std::filesystem::path& picture, const std::string& data,
+                  const std::string& commands) {
+  check_picture_name(picture);
+  const std::filesystem::path full = std::filesystem::absolute(picture);
+  const std::string name = full.stem().string();
+  const std::string script = "# " + name + ".png: draw it again by `gnuplot " + name + ".gp`\n" +
+                             "if (!exists('picture')) picture = " + gnuplot_string(name + ".png") + "\n" +
+                             "data = " + gnuplot_string(name + ".dat") + "\n" +
+                             "set terminal pngcairo noenhanced size 1000,700 font 'DejaVu Sans,13'\n" +
+                             "set output picture\n" + commands;
+  replace_text_file(full.parent_path() / (name + ".dat"), data);
+  replace_text_file(full.parent_path() / (name + ".gp"), script);
+
+  const std::string partial = name + ".png.tmp";
+  const int status = run_gnuplot(full.parent_path(), "picture = " + gnuplot_string(partial), name + ".gp");
+  std::error_code error;
+  if (status == 0) {
+    std::filesystem::rename(full.parent_path() / partial, full, error);
+  }
+  if (status != 0 || error) {
+    std::error_code ignored;
+    std::filesystem::remove(full.parent_path() / partial, ignored);
+    spdlog::warn("{} is not drawn: {}; its script {}.gp is kept", picture.string(),
+                 status == 127 ? "gnuplot is not installed" : "gnuplot failed", name);
+    return false;
+  }
+  return true;
+}
+
+} // namespace undula::apps

@@ -1,0 +1,132 @@
+#include "apps/output/level_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "apps/output/gnuplot.hpp"
+#include "apps/output/hq_report.hpp"
+#include "apps/output/text_table.hpp"
+
+namespace undula::apps {
+namespace {
+
+std::string number(double value, int digits) { return std::isfinite(value) ? decimals(value, digits) : "-"; }
+
+CurveDifference to_reference(const LevelReport& report, const LevelResult& result) {
+  if (result.reference < 0) {
+    return {std::nan(""), std::nan(""), 0};
+  }
+  return curve_difference(result.flow, report.results[static_cast<std::size_t>(result.reference)].flow);
+}
+
+} // namespace
+
+CurveDifference curve_difference(std::span<const double> a, std::span<const double> b) {
+  CurveDifference difference;
+  double squares = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = std::abs(a[i] - b[i]);
+    if (std::isfinite(d)) {
+      squares += d * d;
+      difference.largest = std::max(difference.largest, d);
+      ++difference.points;
+    }
+  }
+  if (difference.points == 0) {
+    return {std::nan(""), std::nan(""), 0};
+  }
+  difference.rms = std::sqrt(squares / difference.points);
+  return difference;
+}
+
+std::string level_report_table(const LevelReport& report) {
+  std::vector<std::vector<std::string>> rows;
+  int index = 1;
+  for (const LevelResult& result : report.results) {
+    const CurveDifference data = curve_difference(result.flow, report.measured);
+    rows.push_back({std::to_string(index++) + " " + result.level, result.source,
+                    std::to_string(result.unknowns), shortest(result.seconds_per_point), number(data.rms, 3),
+                    number(data.largest, 3), number(to_reference(report, result).rms, 3),
+                    result.reference < 0 ? "-" : std::to_string(result.reference + 1)});
+  }
+  return text_table({"level", "source", "unknowns", "s per point", "rms to data (l/min)", "largest (l/min)",
+                     "rms to reference (l/min)", "reference"},
+                    rows) +
+         "data: " + report.data_file + ", scatter " + decimals(report.scatter_l_per_min, 3) +
+         " l/min about its fit; " + std::to_string(report.head_mmHg.size()) + " heads from " +
+         shortest(report.head_mmHg.front()) + " to " + shortest(report.head_mmHg.back()) + " mmHg\n";
+}
+
+std::string level_report_json(const LevelReport& report) {
+  nlohmann::ordered_json json = {{"data", report.data_file},
+                                 {"frequency_Hz", report.frequency_Hz},
+                                 {"stroke_mm", report.stroke_mm},
+                                 {"scatter_l_per_min", report.scatter_l_per_min},
+                                 {"head_mmHg", report.head_mmHg},
+                                 {"measured_l_per_min", report.measured},
+                                 {"levels", nlohmann::ordered_json::array()}};
+  for (const LevelResult& result : report.results) {
+    const CurveDifference data = curve_difference(result.flow, report.measured);
+    nlohmann::ordered_json flow = nlohmann::ordered_json::array();
+    for (const double q : result.flow) {
+      flow.push_back(finite_or_null(q));
+    }
+    json["levels"].push_back(
+        {{"level", result.level},
+         {"source", result.source},
+         {"unknowns", result.unknowns},
+         {"seconds_per_point", result.seconds_per_point},
+         {"flow_l_per_min", flow},
+         {"rms_to_data_l_per_min", finite_or_null(data.rms)},
+         {"largest_to_data_l_per_min", finite_or_null(data.largest)},
+         {"rms_to_reference_l_per_min", finite_or_null(to_reference(report, result).rms)},
+         {"reference",
+          result.reference < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(result.reference)}});
+  }
+  return json.dump(2) + "\n";
+}
+
+bool plot_level_report(const std::filesystem::path& picture, const LevelReport& report) {
+  // One block of the data file per level, so that each has its mark.
+  std::map<std::string, std::string> blocks;
+  int index = 1;
+  double fastest = std::numeric_limits<double>::infinity(), slowest = 0;
+  for (const LevelResult& result : report.results) {
+    const CurveDifference data = curve_difference(result.flow, report.measured);
+    if (data.points > 0) {
+      blocks[result.level] +=
+          shortest(result.seconds_per_point) + " " + shortest(data.rms) + " " + std::to_string(index) + "\n";
+      fastest = std::min(fastest, result.seconds_per_point);
+      slowest = std::max(slowest, result.seconds_per_point);
+    }
+    ++index;
+  }
+  if (blocks.empty()) {
+    return false;
+  }
+  std::string data, items;
+  int block = 0;
+  for (const auto& [level, lines] : blocks) {
+    data += (block == 0 ? "" : "\n\n") + lines;
+    const std::string which = "data index " + std::to_string(block);
+    items += which + " using 1:2 with points pt 7 ps 1.5 lc " + std::to_string(block + 1) + " title " +
+             gnuplot_string(level) + ", \\\n  " + which +
+             " using 1:2:3 with labels offset 1,0.7 notitle, \\\n  ";
+    ++block;
+  }
+  const std::string scatter = shortest(report.scatter_l_per_min);
+  const std::string title = "Speed against error: " + shortest(report.frequency_Hz) + " Hz, stroke " +
+                            shortest(report.stroke_mm) + " mm";
+  return draw_picture(picture, data,
+                      "set title " + gnuplot_string(title) +
+                          "\nset xlabel 'seconds per operating point'"
+                          "\nset ylabel 'rms error of the flow against the data (l/min)'"
+                          "\nset logscale xy\nset grid\nset key outside below\nset xrange [" +
+                          shortest(fastest / 5) + ":" + shortest(slowest * 5) + "]\nplot \\\n  " + items +
+                          scatter + " with lines dt 2 lc rgb 'gray' title 'scatter of the data'\n");
+}
+
+} // namespace undula::apps

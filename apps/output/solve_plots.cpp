@@ -1,0 +1,151 @@
+#include "apps/output/solve_plots.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/output/plots.hpp"
+#include "apps/output/text_table.hpp"
+#include "rom/base/units.hpp"
+
+namespace undula::apps {
+namespace {
+
+constexpr int phases_drawn = 8;
+
+using Outline = std::vector<Eigen::Vector2d>;
+
+/// Edges of the displaced solids.
+std::vector<Outline> solid_outlines(const FieldMesh<2>& solids, const NodalField& displacement) {
+  const auto place = [&](int point) -> Eigen::Vector2d {
+    const double* moved = &displacement.values[2 * static_cast<std::size_t>(point)];
+    return solids.points[static_cast<std::size_t>(point)] + Eigen::Vector2d(moved[0], moved[1]);
+  };
+  std::vector<Outline> outlines;
+  for (const auto& edge : boundary_edges(solids)) {
+    outlines.push_back({place(edge[0]), place(edge[1])});
+  }
+  return outlines;
+}
+
+/// Box around the membrane, a little higher than its flanges are apart.
+struct Window {
+  Eigen::Vector2d low, high;
+  [[nodiscard]] bool contains(const Eigen::Vector2d& x) const {
+    return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+  }
+};
+
+Window membrane_window(const std::array<Point<2>, 2>& box) {
+  const double margin = 0.1 * (box[1][0] - box[0][0]);
+  return {box[0].array() - margin, box[1].array() + margin};
+}
+
+/// Length of the vectors of a field, point by point.
+std::vector<double> magnitudes(const NodalField& field) {
+  const auto components = static_cast<std::size_t>(field.components);
+  std::vector<double> result;
+  for (std::size_t i = 0; i < field.values.size(); i += components) {
+    double square = 0;
+    for (std::size_t c = 0; c < components; ++c) {
+      square += field.values[i + c] * field.values[i + c];
+    }
+    result.push_back(std::sqrt(square));
+  }
+  return result;
+}
+
+void plot_state(const std::filesystem::path& folder, const LevelView& view, const State& state,
+                const std::string& title) {
+  const FieldMesh<2> mesh = view.moved_fluid ? view.moved_fluid(state) : view.fluid;
+  const auto fields = view.fluid_fields(state);
+  const std::vector<double> speed = magnitudes(field_named(fields, "velocity"));
+  std::vector<double> pressure_mmHg;
+  for (const double pressure : field_named(fields, "pressure").values) {
+    pressure_mmHg.push_back(units::pressure_to_mmHg(pressure));
+  }
+  std::vector<Outline> outlines =
+      solid_outlines(view.solids, field_named(view.solid_fields(state), "displacement"));
+  for (const auto& edge : view.outlines) {
+    outlines.push_back({edge[0], edge[1]});
+  }
+  const auto& cells = mesh.cells;
+  const auto field_on = [&](std::span<const std::array<int, 3>> triangles, const std::vector<double>& values,
+                            const char* label) {
+    FieldOnTriangles field{mesh.points, triangles, values, label};
+    if (view.rows.per_depth) field.axes = {"x (cm)", "y (cm)"};
+    return field;
+  };
+  plot_field(folder / "speed.png", title, field_on(cells, speed, "speed (cm/s)"), outlines);
+  plot_field(folder / "pressure.png", title, field_on(cells, pressure_mmHg, "pressure (mmHg)"), outlines);
+
+  const Window window = membrane_window(view.membrane_box);
+  std::vector<std::array<int, 3>> near;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(near), [&](const auto& cell) {
+    return std::all_of(cell.begin(), cell.end(),
+                       [&](int point) { return window.contains(mesh.points[point]); });
+  });
+  std::erase_if(outlines, [&](const Outline& edge) {
+    return !std::all_of(edge.begin(), edge.end(), [&](const auto& x) { return window.contains(x); });
+  });
+  if (!near.empty()) {
+    plot_field(folder / "speed_gap.png", title + ", at the membrane", field_on(near, speed, "speed (cm/s)"),
+               outlines);
+  }
+}
+
+void plot_membrane(const std::filesystem::path& folder, const TimeSeries& membrane,
+                   const std::vector<double>& radius, int steps_per_period, const std::string& title) {
+  const std::size_t complete = membrane.rows() - membrane.rows() % static_cast<std::size_t>(steps_per_period);
+  if (complete == 0) {
+    return;
+  }
+  std::vector<double> radius_mm;
+  for (const double r : radius) {
+    radius_mm.push_back(units::length_to_mm(r));
+  }
+  std::vector<Line> lines;
+  for (int k = 0; k < phases_drawn; ++k) {
+    const int after = (k + 1) * steps_per_period / phases_drawn; // steps since the period began
+    const std::size_t row = complete - static_cast<std::size_t>(steps_per_period - after) - 1;
+    lines.push_back({"t/T = " + shortest(static_cast<double>(after) / steps_per_period), radius_mm,
+                     std::span(membrane.values).subspan(row * radius.size(), radius.size())});
+  }
+  plot_lines(folder / "membrane.png", title + ", last period", "radius (mm)",
+             "axial displacement of the membrane (mm)", lines);
+}
+
+void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, const std::string& title) {
+  const auto column = [&](const std::string& name) {
+    const auto found = std::find(series.columns.begin(), series.columns.end(), name);
+    const auto index = static_cast<std::size_t>(found - series.columns.begin());
+    std::vector<double> values;
+    for (std::size_t row = 0; row < series.rows(); ++row) {
+      values.push_back(series.value(row, index));
+    }
+    return values;
+  };
+  const auto time = column("time_s"), outflow = column("outflow_l_per_min"),
+             inflow = column("inflow_l_per_min");
+  const std::array<Line, 2> lines = {{{"outflow", time, outflow}, {"inflow", time, inflow}}};
+  plot_lines(folder / "flow.png", title, "time (s)", "flow (l/min)", lines);
+}
+
+} // namespace
+
+void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
+  if (scene.problem.stated) {
+    plot_state(run.folder(), run.view(), state, scene.name + ", t = " + shortest(state.time) + " s");
+    return;
+  }
+  const auto& point = scene.operating_point;
+  const std::string title = scene.name + ": " + shortest(point.frequency) + " Hz, stroke " +
+                            shortest(units::length_to_mm(point.stroke)) + " mm, head " +
+                            shortest(units::pressure_to_mmHg(point.head)) + " mmHg";
+  plot_state(run.folder(), run.view(), state,
+             title + ", t/T = " + shortest(static_cast<double>(state.step) / scene.time.steps_per_period));
+  plot_membrane(run.folder(), run.membrane(), run.view().probes.radius, scene.time.steps_per_period, title);
+  plot_flow(run.folder(), run.series(), title);
+}
+
+} // namespace undula::apps

@@ -1,0 +1,214 @@
+#include "fom/coupling/moving_stepper.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "fom/assembly/part_geometry.hpp"
+#include "rom/base/error.hpp"
+
+namespace undula::fom {
+
+template <int dim>
+MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& operators, Coupling coupling,
+                                  const SteppingSettings& settings, const ContactSettings& contact, double dt,
+                                  PhaseTimer& timer, const State& state)
+    : disc_(disc), operators_(operators), coupling_(coupling), settings_(settings), dt_(dt), timer_(timer) {
+  if (contact.film > 0) contact_ = prepare_contact(disc_, contact);
+  if (coupling_ == Coupling::mapped) {
+    const auto scope = timer_.measure("map");
+    extension_ = prepare_extension(disc_);
+  }
+  restore(state);
+  if (state.x[0].size() != disc_.unknowns())
+    throw InputError("the state does not fit the cut at its placement",
+                     std::to_string(state.x[0].size()) + " values",
+                     std::to_string(disc_.unknowns()) + " unknowns", "State::x");
+}
+
+template <int dim>
+void MovingStepper<dim>::restore(const State& state) {
+  if (coupling_ == Coupling::mapped) {
+    disc_.map = {};
+    for (Eigen::Index at = 0; at < state.map[0].size(); at += dim)
+      disc_.map.displacement.push_back(state.map[0].template segment<dim>(at));
+    disc_.map.velocity.assign(disc_.map.displacement.size(), Point<dim>::Zero());
+  } else {
+    const auto scope = timer_.measure("cut");
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(disc_.solid_unknowns());
+    disc_ = recut(disc_, state.placement.size() > 0 ? state.placement : rest, cut_options_);
+  }
+  operators_ = build_operators(disc_, operators_.comm, timer_);
+}
+
+template <int dim>
+Eigen::VectorXd MovingStepper<dim>::extrapolated_placement(const State& state, double t, double dt) const {
+  const Eigen::Index solids = disc_.solid_unknowns();
+  const double ratio = state.last_step > 0 ? dt / state.last_step : 1.0;
+  const auto displacement = state.d[0].tail(solids), velocity = state.x[0].tail(solids);
+  Eigen::VectorXd placement = displacement + dt * velocity;
+  // The velocity half-way through the step, by what it was before.
+  if (settings_.motion.extrapolation == Extrapolation::second && state.step > 0)
+    placement += 0.5 * dt * ratio * (velocity - state.x[1].tail(solids));
+  for (const auto& node : disc_.imposed)
+    placement.template segment<dim>(node.unknown - disc_.fluid_unknowns()) =
+        imposed_displacement(disc_, node, t);
+  return placement;
+}
+
+template <int dim>
+void MovingStepper<dim>::solve_placed(const Eigen::VectorXd& placement, double t, double dt, State& state) {
+  operators_ = build_operators(disc_, operators_.comm, timer_);
+  // A map leaves the pattern as it is: only the numbers are new.
+  if (coupling_ == Coupling::mapped && stepper_ && stepper_->dt() == dt)
+    stepper_->system().refresh();
+  else
+    stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton);
+  if (!contact_) {
+    stepper_->advance_to(t, state);
+    return;
+  }
+  // Newton's method for the film, about ever better places of the skin.
+  constexpr int most = 12;
+  constexpr double accuracy = 0.02;
+  const State placed = state;
+  const SparseMatrix elastic = operators_.stiffness;
+  ContactBalance balance;
+  balance.linearised = placement;
+  for (int iteration = 1; iteration <= most; ++iteration) {
+    auto film = contact_force(*contact_, disc_, balance.linearised);
+    report_.contact_nodes = std::max(report_.contact_nodes, film.nodes);
+    report_.contact_iterations = std::max(report_.contact_iterations, iteration);
+    if (operators_.rank == 0) operators_.stiffness = elastic + film.stiffness;
+    stepper_->system().refresh();
+    stepper_->set_contact(std::move(film));
+    state = placed;
+    stepper_->advance_to(t, state);
+    balance = contact_balance(*contact_, balance.linearised, state.d[0].tail(disc_.solid_unknowns()));
+    if (balance.error <= accuracy && balance.smallest_gap > 0) return;
+  }
+  throw NumericsError(
+      balance.smallest_gap > 0 ? "the film of contact did not find its balance" : "a solid would pass a wall",
+      "t = " + std::to_string(t) + " s, smallest gap " + std::to_string(balance.smallest_gap) +
+          " cm, relative error " + std::to_string(balance.error),
+      "a smaller time step, or a stiffer or thicker film (section [contact])");
+}
+
+template <int dim>
+void MovingStepper<dim>::place_cut(const Eigen::VectorXd& placement, const State& before,
+                                   Discretisation<dim>& origin, State& state) {
+  const auto scope = timer_.measure("cut");
+  auto next = recut(disc_, placement, cut_options_);
+  if (origin.cut.parts.empty()) origin = std::move(disc_);
+  disc_ = std::move(next);
+  const FieldTransfer<dim> transfer(origin, disc_);
+  state.step = before.step;
+  state.time = before.time;
+  for (int level : {0, 1}) {
+    state.x[level] = transfer.unknowns(before.x[level]);
+    state.d[level] = transfer.displacements(before.d[level]);
+  }
+  report_.new_nodes = std::max(report_.new_nodes, transfer.extended());
+}
+
+template <int dim>
+void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, const State& before,
+                                   State& state) {
+  const auto scope = timer_.measure("map");
+  state = before;
+  const double ratio = before.last_step > 0 ? dt / before.last_step : 1.0;
+  const auto alpha = bdf_coefficients(settings_.scheme, before.step + 1, ratio);
+  auto& map = disc_.map;
+  map.displacement = extend(*extension_, placement);
+  map.velocity.resize(map.displacement.size());
+  const auto length = static_cast<Eigen::Index>(map.displacement.size()) * dim;
+  const auto level_before = [&](int level) -> Eigen::VectorXd {
+    return before.map[level].size() > 0 ? before.map[level] : Eigen::VectorXd::Zero(length);
+  };
+  const Eigen::VectorXd last = level_before(0), older = level_before(1);
+  state.map[1] = last;
+  state.map[0].resize(length);
+  for (std::size_t node = 0; node < map.displacement.size(); ++node) {
+    const auto at = static_cast<Eigen::Index>(node) * dim;
+    state.map[0].template segment<dim>(at) = map.displacement[node];
+    map.velocity[node] = (alpha[0] * map.displacement[node] + alpha[1] * last.template segment<dim>(at) +
+                          alpha[2] * older.template segment<dim>(at)) /
+                         dt;
+  }
+  const auto smallest = smallest_volume(disc_);
+  report_.smallest_volume_ratio = std::min(report_.smallest_volume_ratio, smallest.ratio);
+  if (smallest.ratio <= 0)
+    throw NumericsError("the map of the fluid's domain folds",
+                        "volume ratio " + std::to_string(smallest.ratio) + " of the element at rest about (" +
+                            std::to_string(smallest.place[0]) + ", " + std::to_string(smallest.place[1]) +
+                            ") cm",
+                        "coupling = \"explicit\", which cuts anew, or less stroke");
+}
+
+template <int dim>
+void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
+  const State before = state;
+  const auto solids = disc_.solid_unknowns();
+  Discretisation<dim> origin; // cut and numbering of `before`
+  Eigen::VectorXd placement = extrapolated_placement(state, t, dt);
+  if (contact_) keep_off_walls<dim>(*contact_, before.d[0].tail(solids), placement);
+  const int turns = coupling_ == Coupling::implicit ? settings_.motion.max_iterations : 1;
+  double error = 0;
+  for (int turn = 1; turn <= turns; ++turn) {
+    if (coupling_ == Coupling::mapped)
+      place_map(placement, dt, before, state);
+    else
+      place_cut(placement, before, origin, state);
+    solve_placed(placement, t, dt, state);
+    state.last_step = dt;
+    state.placement = placement;
+    error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();
+    report_.iterations = std::max(report_.iterations, turn);
+    if (coupling_ != Coupling::implicit || error <= settings_.motion.tolerance) {
+      report_.placement_error = std::max(report_.placement_error, error);
+      return;
+    }
+    placement = state.d[0].tail(solids);
+  }
+  throw NumericsError("cut and solve do not settle",
+                      "t = " + std::to_string(t) + " s, the solids end " + std::to_string(error) +
+                          " cm from where they were placed after " + std::to_string(turns) + " turns",
+                      "a smaller time step, more turns (time.coupling_iterations) or a larger tolerance "
+                      "(time.coupling_tolerance_mm)");
+}
+
+template <int dim>
+void MovingStepper<dim>::advance(State& state) {
+  const State before = state;
+  const double end = (before.step + 1) * dt_;
+  // After parts, the step is tried in half as many.
+  int parts = before.last_step > 0 ? static_cast<int>(std::lround(dt_ / before.last_step)) : 1;
+  parts = std::max(1, parts / 2);
+  while (true) {
+    report_ = {};
+    report_.parts = parts;
+    try {
+      for (int part = 1; part <= parts; ++part)
+        advance_part(part == parts ? end : before.time + dt_ * part / parts, dt_ / parts, state);
+      state.step = before.step + 1;
+      return;
+    } catch (const NumericsError& error) {
+      state = before;
+      restore(state);
+      parts *= 2;
+      if (parts > (1 << settings_.motion.max_halvings))
+        throw NumericsError(
+            std::string("the time step was halved as often as allowed: ") + error.what(),
+            "step " + std::to_string(before.step + 1) + ", t = " + std::to_string(end) + " s",
+            "restart from the last checkpoint with a smaller step, or more halvings (time.halvings)");
+      if (operators_.rank == 0) spdlog::warn("step {} in {} parts: {}", before.step + 1, parts, error.what());
+    }
+  }
+}
+
+template class MovingStepper<2>;
+
+} // namespace undula::fom

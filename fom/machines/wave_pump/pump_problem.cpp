@@ -1,0 +1,102 @@
+#include "fom/machines/wave_pump/pump_problem.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "fom/fom.hpp"
+#include "fom/levels/scene_problem.hpp"
+#include "geometry/mesh/gmsh_import.hpp"
+#include "geometry/wave_pump/profile_scale.hpp"
+#include "geometry/wave_pump/pump.hpp"
+#include "rom/base/error.hpp"
+
+namespace undula::fom {
+
+double holder_displacement(const Scene& scene, double t) {
+  const auto& point = scene.operating_point;
+  return point.stroke_scale * point.stroke * smooth_ramp(t, scene.time.ramp_periods / point.frequency) *
+         std::sin(2 * std::numbers::pi * point.frequency * t);
+}
+
+double outlet_pressure(const Scene& scene, double t) {
+  const auto& point = scene.operating_point;
+  return point.head * smooth_ramp(t, scene.time.ramp_periods / point.frequency);
+}
+
+PumpProfile scene_profile(const Scene& scene) {
+  return scale_clearances(read_pump_profile(scene.profile), scene.clearance_scale, scene.rim_gap_scale);
+}
+
+namespace {
+
+struct PumpMeshes {
+  SimplexMesh<2> background;
+  std::vector<SimplexMesh<2>> solids; ///< the membrane first
+  double clamp_radius = 0;            ///< cm
+};
+
+PumpMeshes pump_meshes(const Scene& scene) {
+  PumpMeshes meshes;
+  meshes.clamp_radius = scene.clamp_radius;
+  if (scene.profile.empty()) {
+    meshes.background = import_gmsh<2>(scene.fluid_mesh).mesh;
+    for (const auto& file : scene.solid_meshes) meshes.solids.push_back(import_gmsh<2>(file).mesh);
+    return meshes;
+  }
+  const auto profile = scene_profile(scene);
+  const PumpMeshSizes sizes{scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
+                            scene.mesh.growth};
+  meshes.background = pump_background(profile, sizes, refinement_boxes(scene.problem));
+  meshes.solids = {pump_membrane(profile, sizes), pump_magnet(profile, sizes)};
+  if (meshes.clamp_radius == 0) meshes.clamp_radius = profile.membrane.clamp_radius;
+  return meshes;
+}
+
+} // namespace
+
+FsiProblem<2> pump_problem(const Scene& scene) {
+  auto meshes = pump_meshes(scene);
+  auto problem = problem_without_meshes(scene);
+  problem.background = std::move(meshes.background);
+
+  using Condition = BoundaryCondition<2>;
+  for (const auto& name : problem.background.boundary_names) {
+    Condition condition;
+    if (name == inlet_name || name == outlet_name) {
+      condition.kind = Condition::Kind::opening;
+      condition.opening = name == inlet_name ? scene.inlet : scene.outlet;
+      if (name == outlet_name) condition.pressure = [scene](double t) { return outlet_pressure(scene, t); };
+    } else if (name == "axis") {
+      condition.kind = Condition::Kind::symmetry;
+    }
+    problem.boundary.emplace(name, condition);
+  }
+  for (const char* opening : {inlet_name, outlet_name})
+    if (!problem.boundary.contains(opening))
+      throw InputError("the fluid mesh has no opening", std::string("no boundary named '") + opening + "'",
+                       "boundaries named 'inlet' and 'outlet'", scene.fluid_mesh.string());
+
+  for (std::size_t s = 0; s < meshes.solids.size(); ++s) {
+    SolidBody<2> body;
+    body.mesh = std::move(meshes.solids[s]);
+    body.imposed_displacement = [scene](const Point<2>&, double t) {
+      return Point<2>(0.0, holder_displacement(scene, t));
+    };
+    if (s == 0) {
+      body.name = "membrane";
+      body.properties = scene.membrane;
+      body.model = scene.solid_model;
+      // Nodes on the clamp line itself are imposed: it is a mesh line, up to rounding.
+      const double from = meshes.clamp_radius * (1 - 1e-9);
+      body.imposed = [from](const Point<2>& x) { return x[0] >= from; };
+    } else {
+      // Moves as a whole, so its elasticity and inertia do not enter.
+      body.name = "holder_" + std::to_string(s);
+      body.imposed = [](const Point<2>&) { return true; };
+    }
+    problem.solids.push_back(std::move(body));
+  }
+  return problem;
+}
+
+} // namespace undula::fom

@@ -1,0 +1,174 @@
+#include "fom/output/observables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "fom/fom.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "geometry/mesh/innermost_cell.hpp"
+
+namespace undula::fom {
+
+namespace {
+
+/// Lowest and highest point of a mesh on the line x = r.
+std::pair<double, double> extent_at(const SimplexMesh<2>& mesh, double r) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& facet : mesh.boundary) {
+    const auto &a = mesh.points[facet.points[0]], &b = mesh.points[facet.points[1]];
+    if ((a[0] - r) * (b[0] - r) > 0) continue;
+    for (const double z : {a[0] == b[0] ? a[1] : a[1] + (b[1] - a[1]) * (r - a[0]) / (b[0] - a[0]),
+                           a[0] == b[0] ? b[1] : a[1] + (b[1] - a[1]) * (r - a[0]) / (b[0] - a[0])}) {
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+  }
+  return {low, high};
+}
+
+double distance_to_segment(const Point<2>& x, const std::array<Point<2>, 2>& segment) {
+  const Point<2> along = segment[1] - segment[0];
+  const double s = std::clamp((x - segment[0]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (x - segment[0] - s * along).norm();
+}
+
+/// Even-odd rule along +x.
+bool inside(const Point<2>& x, const std::vector<std::array<Point<2>, 2>>& outline) {
+  bool odd = false;
+  for (const auto& [a, b] : outline)
+    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]))
+      odd = !odd;
+  return odd;
+}
+
+double minimal_clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, int solid_unknowns) {
+  if (plan.walls.empty() || plan.skin_unknowns.empty()) return 0.0;
+  const Eigen::VectorXd moved = d.tail(solid_unknowns);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < plan.skin_unknowns.size(); ++i) {
+    const Point<2> x = plan.skin_positions[i] + moved.segment<2>(plan.skin_unknowns[i]);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& wall : plan.walls) nearest = std::min(nearest, distance_to_segment(x, wall));
+    smallest = std::min(smallest, inside(x, plan.outline) ? nearest : -nearest);
+  }
+  return smallest;
+}
+
+struct WallShear {
+  double maximum = 0, mean = 0;
+};
+
+WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operators, const Eigen::VectorXd& x) {
+  WallShear shear;
+  double area = 0;
+  const Measure measure = measure_of(disc.problem.space);
+  for (const auto& piece : disc.cut.boundary) {
+    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
+    if (condition.kind != BoundaryCondition<2>::Kind::velocity) continue;
+    const auto& g = operators.gradients[piece.part];
+    const Point<2> n = -g.col(disc.cut.facets.facets[piece.facet].local[0]).normalized();
+    const Eigen::Matrix2d gradient = part_velocity(disc, piece.part, x) * g.transpose();
+    const Point<2> traction = disc.problem.fluid.viscosity * (gradient + gradient.transpose()) * n;
+    const double tangential = (traction - traction.dot(n) * n).norm();
+    shear.maximum = std::max(shear.maximum, tangential);
+    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+      const double w =
+          disc.cut.boundary_quadrature.weights[q] * measure(disc.cut.boundary_quadrature.points[q][0]);
+      shear.mean += w * tangential;
+      area += w;
+    }
+  }
+  if (area > 0) shear.mean /= area;
+  return shear;
+}
+
+} // namespace
+
+template <int dim>
+MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count) {
+  MembraneProbes probes;
+  probes.axial.resize(count, disc.solid_unknowns());
+  const auto& mesh = disc.problem.solids[0].mesh;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& x : mesh.points) {
+    low = std::min(low, x[0]);
+    high = std::max(high, x[0]);
+  }
+  Triplets entries;
+  for (int k = 0; k < count; ++k) {
+    // Slightly inside, so that a probe at either end has an interior point of the membrane above it.
+    const double r = low + (high - low) * (1e-6 + (1 - 2e-6) * k / (count - 1.0));
+    const auto [bottom, top] = extent_at(mesh, r);
+    const Point<dim> x(r, 0.5 * (bottom + top));
+    const int cell = innermost_cell(mesh, x);
+    const auto shape = quadratic_values<dim>(barycentric_coordinates(mesh, cell, x));
+    const auto& nodes = disc.solid_spaces[0].cell_nodes[cell];
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      entries.emplace_back(k, disc.solid_unknown(0, nodes[i], dim - 1) - disc.fluid_unknowns(), shape[i]);
+    probes.radius.push_back(r);
+  }
+  probes.axial.setFromTriplets(entries.begin(), entries.end());
+  return probes;
+}
+
+template <int dim>
+ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe_count) {
+  ObservationPlan<dim> plan;
+  if (!disc.problem.solids.empty() && probe_count > 0) plan.probes = membrane_probes(disc, probe_count);
+  for (std::size_t s = 0; s < disc.problem.solids.size(); ++s) {
+    std::set<int> skin;
+    for (const auto& facet : disc.problem.solids[s].mesh.boundary)
+      skin.insert(facet.points.begin(), facet.points.end());
+    for (const int node : skin) {
+      plan.skin_unknowns.push_back(disc.solid_unknown(static_cast<int>(s), node, 0) - disc.fluid_unknowns());
+      plan.skin_positions.push_back(disc.solid_spaces[s].nodes[node]);
+    }
+  }
+  for (const auto& facet : disc.problem.background.boundary) {
+    std::array<Point<dim>, dim> simplex;
+    for (int a = 0; a < dim; ++a) simplex[a] = disc.problem.background.points[facet.points[a]];
+    plan.outline.push_back(simplex);
+    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[facet.tag]);
+    if (condition.kind == BoundaryCondition<dim>::Kind::velocity) plan.walls.push_back(simplex);
+  }
+  return plan;
+}
+
+template <int dim>
+Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                    const TimeStepper<dim>& stepper, const ObservationPlan<dim>& plan, const State& state) {
+  Observation seen;
+  const auto& x = state.x[0];
+  seen.step = state.step;
+  seen.time = state.time;
+  if (const auto outlet = operators.openings.find(outlet_name); outlet != operators.openings.end()) {
+    seen.outflow = outlet->second.dot(x);
+    const auto& pressure = disc.problem.boundary.at(outlet_name).pressure;
+    if (pressure) seen.hydraulic_power = pressure(state.time) * seen.outflow;
+  }
+  if (const auto inlet = operators.openings.find(inlet_name); inlet != operators.openings.end())
+    seen.inflow = -inlet->second.dot(x);
+  seen.stated = observe_stated(plan.stated, disc, operators, stepper, state);
+  seen.energy = stepper.energy(state);
+  for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
+    seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());
+  const auto shear = wall_shear(disc, operators, x);
+  seen.wall_shear_max = shear.maximum;
+  seen.wall_shear_mean = shear.mean;
+  seen.clearance_min = minimal_clearance(plan, state.d[0], disc.solid_unknowns());
+  if (!plan.probes.radius.empty()) {
+    const Eigen::VectorXd axial = plan.probes.axial_displacement(state.d[0]);
+    seen.tip_displacement = axial[0];
+    seen.holder_displacement = axial[axial.size() - 1];
+  }
+  return seen;
+}
+
+template MembraneProbes membrane_probes(const Discretisation<2>&, int);
+template ObservationPlan<2> plan_observation(const Discretisation<2>&, int);
+template Observation observe(const Discretisation<2>&, const Operators<2>&, const TimeStepper<2>&,
+                             const ObservationPlan<2>&, const State&);
+
+} // namespace undula::fom

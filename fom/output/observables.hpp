@@ -1,0 +1,59 @@
+// What a run reports at every step, in cgs.
+#pragma once
+
+#include "fom/coupling/motion_report.hpp"
+#include "fom/scene/general_observables.hpp"
+
+namespace undula::fom {
+
+/// Axial displacement along the membrane's mid-plane as a linear functional of the displacement array.
+struct MembraneProbes {
+  std::vector<double> radius; ///< cm, ascending
+  SparseMatrix axial;         ///< radius.size() x solid unknowns, the last of the displacement array
+
+  /// Axial displacement at the probes, cm, from a whole displacement array (State::d).
+  Eigen::VectorXd axial_displacement(const Eigen::VectorXd& d) const { return axial * d.tail(axial.cols()); }
+};
+
+/// `count` probes, evenly spaced in r over solid 0, half-way between its lower and upper skin.
+template <int dim>
+MembraneProbes membrane_probes(const Discretisation<dim>& disc, int count);
+
+struct Observation {
+  int step = 0;
+  double time = 0;            ///< s
+  double outflow = 0;         ///< out of the outlet, cm^3/s
+  double inflow = 0;          ///< into the inlet, cm^3/s
+  double hydraulic_power = 0; ///< head times outflow, erg/s
+  EnergyTerms energy;
+  double speed_max = 0;           ///< cm/s
+  double wall_shear_max = 0;      ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0;     ///< dyn/cm^2, area mean
+  double clearance_min = 0;       ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  double tip_displacement = 0;    ///< cm, axial, innermost probe
+  double holder_displacement = 0; ///< cm, axial, outermost probe
+  MotionReport motion;            ///< of couplings that move the domain
+  std::vector<double> stated;     ///< by StatedObservables::columns, cgs
+};
+
+/// Precomputed geometry of the observables.
+template <int dim>
+struct ObservationPlan {
+  MembraneProbes probes;
+  std::vector<int> skin_unknowns; ///< component 0 of the skin's nodes, counted from the solids' first unknown
+  std::vector<Point<dim>> skin_positions;           ///< at rest, cm
+  std::vector<std::array<Point<dim>, dim>> walls;   ///< boundary simplices with imposed velocity
+  std::vector<std::array<Point<dim>, dim>> outline; ///< all boundary simplices
+  StatedObservables stated;                         ///< empty but for scenes that state their problem
+};
+
+/// No probes for `probe_count` 0.
+template <int dim>
+ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe_count);
+
+/// Collective.
+template <int dim>
+Observation observe(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                    const TimeStepper<dim>& stepper, const ObservationPlan<dim>& plan, const State& state);
+
+} // namespace undula::fom

@@ -1,0 +1,41 @@
+// The time series of a run: one row of surface units per step, and what a period of it says.
+#pragma once
+
+#include "fom/output/observables.hpp"
+#include "fom/output/time_series.hpp"
+
+namespace undula::fom {
+
+/// What a row of a time series holds: that of a pump, or that of a scene that states its problem.
+struct RowLayout {
+  bool pump = true;
+  bool per_depth = false; ///< plane: powers and energies per cm of depth
+  bool moving = false;    ///< the fluid's domain moves
+  std::vector<StatedColumn> stated;
+};
+
+/// Columns of time_series.csv, without "step".
+std::vector<std::string> observation_columns(const RowLayout& layout = {});
+
+/// One value per column.
+std::vector<double> observation_row(const Observation& seen, const RowLayout& layout = {});
+
+/// What one period comes to. Flows in l/min.
+struct PeriodSummary {
+  int period = 0;               ///< from 1
+  double outflow_l_per_min = 0; ///< mean
+  double inflow_l_per_min = 0;  ///< mean
+  double spread_l_per_min = 0;  ///< highest minus lowest outflow
+  double input_power_mW = 0;    ///< mean power of the holder, and of the openings where they drive
+  /// (holder + opening - viscous - stabilisation - damping - carried - contact - growth of kinetic and
+  /// elastic energy) as a part of the input power: what the time scheme dissipates, and errors. 0 without
+  /// input.
+  double energy_gap = 0;
+  double speed_max_cm_per_s = 0;
+  double clearance_min_mm = 0;
+};
+
+/// The complete periods of a pump's table with observation_columns.
+std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_per_period);
+
+} // namespace undula::fom

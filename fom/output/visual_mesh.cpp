@@ -1,0 +1,96 @@
+#include "fom/output/visual_mesh.hpp"
+
+namespace undula::fom {
+template <int dim>
+FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
+  FluidPicture<dim> picture;
+  const auto& cut = disc.cut;
+  std::vector<int> point_of_node(disc.fluid_nodes.dof_point.size(), -1);
+  const auto add_point = [&](const Point<dim>& x, const std::array<int, dim + 1>& nodes,
+                             const Eigen::Matrix<double, dim + 1, 1>& weights) {
+    picture.mesh.points.push_back(x);
+    picture.nodes.push_back(nodes);
+    picture.weights.push_back(weights);
+    return static_cast<int>(picture.mesh.points.size()) - 1;
+  };
+  for (std::size_t p = 0; p < cut.parts.size(); ++p) {
+    const auto& part = cut.parts[p];
+    const auto& nodes = disc.fluid_nodes.part_dofs[p];
+    std::array<int, dim + 1> simplex;
+    if (!part.cut) {
+      for (int a = 0; a <= dim; ++a) {
+        int& point = point_of_node[nodes[a]];
+        if (point < 0)
+          point = add_point(cut.mesh.points[cut.mesh.cells[part.cell][a]], nodes,
+                            Eigen::Matrix<double, dim + 1, 1>::Unit(a));
+        simplex[a] = point;
+      }
+      picture.mesh.cells.push_back(simplex);
+      continue;
+    }
+    for (int s = part.simplex_begin; s < part.simplex_end; ++s) {
+      const auto& vertices = cut.simplices[s];
+      for (int a = 0; a <= dim; ++a)
+        simplex[a] = add_point(vertices[a], nodes, barycentric_coordinates(cut.mesh, part.cell, vertices[a]));
+      picture.mesh.cells.push_back(simplex);
+    }
+  }
+  return picture;
+}
+
+template <int dim>
+FluidPicture<dim> moved_picture(const Discretisation<dim>& disc) {
+  auto picture = fluid_picture(disc);
+  if (disc.map.is_identity()) return picture;
+  for (std::size_t p = 0; p < picture.nodes.size(); ++p)
+    for (int k = 0; k <= dim; ++k)
+      picture.mesh.points[p] += picture.weights[p][k] * disc.map.displacement[picture.nodes[p][k]];
+  return picture;
+}
+
+FieldMesh<2> solid_picture(const Discretisation<2>& disc) {
+  FieldMesh<2> mesh;
+  for (const auto& space : disc.solid_spaces) {
+    const int first = static_cast<int>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), space.nodes.begin(), space.nodes.end());
+    for (const auto& cell : space.cell_nodes) {
+      // Vertices 0, 1, 2; mid-points 3 on (0,1), 4 on (0,2), 5 on (1,2).
+      for (const auto& corner : {std::array{0, 3, 4}, {3, 1, 5}, {4, 5, 2}, {3, 5, 4}})
+        mesh.cells.push_back({first + cell[corner[0]], first + cell[corner[1]], first + cell[corner[2]]});
+    }
+  }
+  return mesh;
+}
+
+template <int dim>
+std::vector<NodalField> fluid_fields(const Discretisation<dim>& disc, const FluidPicture<dim>& picture,
+                                     const State& state) {
+  NodalField velocity{"velocity", "cm/s", dim, {}};
+  NodalField pressure{"pressure", "dyn/cm^2", 1, {}};
+  const auto& x = state.x[0];
+  for (std::size_t p = 0; p < picture.nodes.size(); ++p) {
+    Eigen::Matrix<double, dim + 1, 1> value = Eigen::Matrix<double, dim + 1, 1>::Zero();
+    for (int k = 0; k <= dim; ++k)
+      value +=
+          picture.weights[p][k] * x.template segment<dim + 1>(disc.velocity_unknown(picture.nodes[p][k], 0));
+    velocity.values.insert(velocity.values.end(), value.data(), value.data() + dim);
+    pressure.values.push_back(value[dim]);
+  }
+  return {std::move(velocity), std::move(pressure)};
+}
+
+template <int dim>
+std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const State& state) {
+  const auto solid_part = [&](const Eigen::VectorXd& all) {
+    return std::vector<double>(all.data() + disc.fluid_unknowns(), all.data() + disc.unknowns());
+  };
+  return {{"displacement", "cm", dim, solid_part(state.d[0])},
+          {"velocity", "cm/s", dim, solid_part(state.x[0])}};
+}
+
+template FluidPicture<2> fluid_picture(const Discretisation<2>&);
+template FluidPicture<2> moved_picture(const Discretisation<2>&);
+template std::vector<NodalField> fluid_fields(const Discretisation<2>&, const FluidPicture<2>&, const State&);
+template std::vector<NodalField> solid_fields(const Discretisation<2>&, const State&);
+
+} // namespace undula::fom

@@ -1,0 +1,43 @@
+// What is drawn of a state: the fluid parts of the cut mesh, and the solids at rest with their displacement
+// as a field.
+#pragma once
+
+#include <span>
+
+#include "fom/output/field_writer.hpp"
+#include "fom/time/time_stepper.hpp"
+
+namespace undula::fom {
+
+/// Triangles (tetrahedra) that fill the fluid. Uncut elements share the points of their nodes; cut parts are
+/// filled by simplices with points of their own, so that a field may jump across a membrane thinner than an
+/// element.
+template <int dim>
+struct FluidPicture {
+  FieldMesh<dim> mesh;
+  /// Value at point p = sum over k of weights[p][k] * value of fluid node nodes[p][k].
+  std::vector<std::array<int, dim + 1>> nodes;
+  std::vector<Eigen::Matrix<double, dim + 1, 1>> weights;
+};
+
+template <int dim>
+FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc);
+
+/// The same with its points where the map of the domain takes them.
+template <int dim>
+FluidPicture<dim> moved_picture(const Discretisation<dim>& disc);
+
+/// The quadratic nodes of all solids, one after the other; every element split into four triangles through
+/// its edge mid-points.
+FieldMesh<2> solid_picture(const Discretisation<2>& disc);
+
+/// "velocity" (cm/s) and "pressure" (dyn/cm^2) on the points of the picture.
+template <int dim>
+std::vector<NodalField> fluid_fields(const Discretisation<dim>& disc, const FluidPicture<dim>& picture,
+                                     const State& state);
+
+/// "displacement" (cm) and "velocity" (cm/s) on the points of solid_picture.
+template <int dim>
+std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const State& state);
+
+} // namespace undula::fom

@@ -1,0 +1,75 @@
+// A fluid-structure problem on a fixed cut, stated as plain data: what the discretisation needs and no more.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fom/fom.hpp"
+#include "fom/problem/conditions.hpp"
+#include "fom/problem/materials.hpp"
+#include "fom/problem/stabilisation_weights.hpp"
+#include "geometry/mesh/simplex_mesh.hpp"
+
+namespace undula::fom {
+
+/// Vector field of position (cm) and time (s).
+template <int dim>
+using VectorField = std::function<Point<dim>(const Point<dim>&, double)>;
+using TimeFunction = std::function<double(double)>;
+
+/// Condition on a named part of the background's boundary.
+template <int dim>
+struct BoundaryCondition {
+  enum class Kind {
+    velocity, ///< u = velocity(x, t), imposed strongly
+    symmetry, ///< the normal component vanishes on a side along a coordinate axis: axis of symmetry
+    opening   ///< normal stress by `pressure`, see OpeningCondition
+  };
+  Kind kind = Kind::velocity;
+  VectorField<dim> velocity; ///< empty: zero
+  TimeFunction pressure;     ///< dyn/cm^2, empty: zero
+  OpeningCondition opening = OpeningCondition::total_pressure;
+  /// Flow enters or leaves an opening along its normal: the tangential components vanish. The opening has to
+  /// be aligned with a coordinate plane.
+  bool tangential_zero = true;
+};
+
+/// A solid with its own mesh. Displacement is imposed at the nodes of the region where `imposed` holds.
+template <int dim>
+struct SolidBody {
+  std::string name;
+  SimplexMesh<dim> mesh;
+  SolidProperties properties;
+  SolidModel model = SolidModel::linear;
+  std::function<bool(const Point<dim>&)> imposed; ///< empty: nowhere
+  VectorField<dim> imposed_displacement;          ///< cm, empty: zero
+  VectorField<dim> body_force;                    ///< dyn/cm^3, empty: zero
+  VectorField<dim> initial_velocity;              ///< cm/s at rest positions, t = 0; empty: zero
+};
+
+/// `background` may have no cells (a solid in vacuo) and `solids` may be empty (a rigid channel).
+template <int dim>
+struct FsiProblem {
+  Space space = Space::plane;
+  FlowModel flow = FlowModel::navier_stokes;
+  FluidProperties fluid;
+  SimplexMesh<dim> background;
+  std::vector<SolidBody<dim>> solids;
+  std::map<std::string, BoundaryCondition<dim>> boundary; ///< by name; every boundary name needs one
+  VectorField<dim> body_force;                            ///< dyn/cm^3 on the fluid, empty: zero
+  StabilisationWeights stabilisation;
+  double slip_length = 0;    ///< cm, of Navier's slip law on the skins of the solids; 0: no slip
+  bool pin_pressure = false; ///< enclosed flow: fix the constant of the pressure at one node
+};
+
+/// Weight of the volume element: 2 pi r in axisymmetric space, 1 in plane space (per cm of depth) and in 3D.
+struct Measure {
+  bool axisymmetric = false;
+  double operator()(double r) const;
+};
+
+Measure measure_of(Space space);
+
+} // namespace undula::fom

@@ -1,0 +1,46 @@
+// What a scene asks to be observed: flow through openings, forces, and points that are followed.
+#pragma once
+
+#include "fom/scene/scene.hpp"
+#include "fom/time/time_stepper.hpp"
+
+namespace undula::fom {
+
+/// One value per step in surface units; its name ends in the unit.
+struct StatedColumn {
+  std::string name;
+  double cgs_per_unit = 1;
+};
+
+/// A force summed over solids and boundaries.
+struct StatedForce {
+  std::vector<int> solids;
+  std::vector<std::string> boundaries;
+};
+
+/// A point of a solid, by the nodes of its cell and their weights.
+struct SolidPoint {
+  std::vector<int> unknowns; ///< of component 0, counted from the first unknown of all solids
+  std::vector<double> weights;
+};
+
+/// Columns in the order of `columns`: openings, forces, points of solids, points of the fluid.
+struct StatedObservables {
+  std::vector<StatedColumn> columns;
+  std::vector<std::string> openings;
+  std::vector<StatedForce> forces;
+  std::vector<int> components; ///< of a force that are reported
+  std::vector<SolidPoint> solid_points;
+  std::vector<Point<2>> fluid_points; ///< cm
+};
+
+/// Plans what the scene states. Throws InputError for a point outside of its body, or outside of the fluid at
+/// rest.
+StatedObservables plan_stated_observables(const Discretisation<2>& disc, const Scene& scene);
+
+/// One value per column, cgs. Points of the fluid that a solid covers give nan. Collective.
+std::vector<double> observe_stated(const StatedObservables& plan, const Discretisation<2>& disc,
+                                   const Operators<2>& operators, const TimeStepper<2>& stepper,
+                                   const State& state);
+
+} // namespace undula::fom

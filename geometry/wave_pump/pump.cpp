@@ -1,0 +1,74 @@
+#include "geometry/wave_pump/pump.hpp"
+
+#include <algorithm>
+
+#include "geometry/mesh/polygon_mesh.hpp"
+
+namespace undula::geometry {
+
+namespace {
+
+/// Bound of the angles in degrees: above the proven 20.7, with a margin to the 30 where refinement stops to
+/// end.
+constexpr double min_angle = 25;
+
+double twice_area(const std::vector<Point<2>>& points) {
+  double sum = 0;
+  for (std::size_t i = 0, n = points.size(); i < n; ++i) {
+    const auto& a = points[i];
+    const auto& b = points[(i + 1) % n];
+    sum += a.x() * b.y() - a.y() * b.x();
+  }
+  return sum;
+}
+
+} // namespace
+
+SimplexMesh<2> pump_background(const PumpProfile& profile, const PumpMeshSizes& sizes,
+                               std::span<const RefinementBox<2>> boxes) {
+  const auto outline = fluid_outline(profile);
+  TaggedPolygon polygon;
+  polygon.points = outline.points;
+  polygon.tags.assign(outline.curves.begin(), outline.curves.end());
+  polygon.names = {"housing", "stator", "axis", "inlet", "outlet"}; // in the order of FluidOutline::Curve
+  const auto by_gaps = pump_size_field(profile, sizes);
+  const auto size = [&](const Point<2>& x) {
+    double smallest = by_gaps(x);
+    for (const auto& box : boxes) smallest = std::min(smallest, size_about(box, sizes.growth, x));
+    return smallest;
+  };
+  return mesh_polygon(polygon, size, min_angle);
+}
+
+SimplexMesh<2> pump_membrane(const PumpProfile& profile, const PumpMeshSizes& sizes) {
+  const auto& membrane = profile.membrane;
+  TaggedPolygon polygon;
+  polygon.points = membrane_outline(membrane);
+  polygon.names = {"lower", "rim", "upper", "tip"};
+  const int columns = static_cast<int>(polygon.points.size()) / 2; // points along one side
+  polygon.tags.assign(polygon.points.size(), 0);
+  polygon.tags[columns - 1] = 1;
+  std::fill(polygon.tags.begin() + columns, polygon.tags.end(), 2);
+  polygon.tags.back() = 3;
+  for (int i = 0; i < columns; ++i)
+    if (polygon.points[i].x() == membrane.clamp_radius)
+      polygon.inner_lines.push_back({i, 2 * columns - 1 - i});
+
+  // No edge exceeds 4/3 of the target, so 3/8 of the thickness keeps two elements across.
+  const auto size = [&](const Point<2>& x) {
+    return std::min(sizes.membrane_size, 0.375 * membrane_thickness(membrane, x.x()));
+  };
+  return mesh_polygon(polygon, size, min_angle);
+}
+
+SimplexMesh<2> pump_magnet(const PumpProfile& profile, const PumpMeshSizes& sizes) {
+  TaggedPolygon polygon;
+  polygon.points = profile.magnet.points;
+  if (twice_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
+  polygon.tags.assign(polygon.points.size(), 0);
+  polygon.names = {"magnet"};
+  return mesh_polygon(
+      polygon, [&](const Point<2>&) { return sizes.membrane_size; }, min_angle);
+}
+
+} // namespace undula::geometry

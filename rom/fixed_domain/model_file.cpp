@@ -1,0 +1,239 @@
+// The model file: kind, version, one dataset per operator with its unit, the reference runs, provenance.
+#include <cmath>
+
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_file.hpp"
+#include "rom/fixed_domain/model.hpp"
+
+namespace undula::rom {
+namespace {
+
+constexpr const char* file_kind = "undula reduced model";
+constexpr int file_version = 1;
+
+using Shape = Hdf5File::Shape;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::size_t extent(Eigen::Index n) { return static_cast<std::size_t>(n); }
+
+/// One visitor for writing and reading, so that the two cannot drift apart.
+class Writer {
+public:
+  explicit Writer(Hdf5File& file) : file_(file) {}
+
+  void operator()(const std::string& name, const Eigen::MatrixXd& matrix, Eigen::Index rows,
+                  Eigen::Index columns, const std::string& unit) {
+    check(name, matrix.rows() == rows && matrix.cols() == columns);
+    const RowMajor values = matrix;
+    file_.write(name, std::span(values.data(), extent(values.size())),
+                {extent(values.rows()), extent(values.cols())}, unit);
+  }
+  void operator()(const std::string& name, const Eigen::VectorXd& vector, Eigen::Index size,
+                  const std::string& unit) {
+    check(name, vector.size() == size);
+    file_.write(name, std::span(vector.data(), extent(vector.size())), {extent(vector.size())}, unit);
+  }
+  void operator()(const std::string& name, const std::vector<Eigen::MatrixXd>& tensor, Eigen::Index n,
+                  const std::string& unit) {
+    check(name, std::ssize(tensor) == n);
+    std::vector<double> values;
+    values.reserve(extent(n * n * n));
+    for (const auto& slice : tensor) {
+      check(name, slice.rows() == n && slice.cols() == n);
+      const RowMajor rows = slice;
+      values.insert(values.end(), rows.data(), rows.data() + rows.size());
+    }
+    file_.write(name, values, {extent(n), extent(n), extent(n)}, unit);
+  }
+
+private:
+  void check(const std::string& name, bool fits) const {
+    if (!fits)
+      throw InputError("'" + name + "' does not fit the numbers of modes", "another size",
+                       "the sizes stated in rom/fixed_domain/model.hpp", file_.path().string());
+  }
+  Hdf5File& file_;
+};
+
+class Reader {
+public:
+  explicit Reader(const Hdf5File& file) : file_(file) {}
+
+  void operator()(const std::string& name, Eigen::MatrixXd& matrix, Eigen::Index rows, Eigen::Index columns,
+                  const std::string&) {
+    const auto values = finite(name, {extent(rows), extent(columns)});
+    matrix = Eigen::Map<const RowMajor>(values.data(), rows, columns);
+  }
+  void operator()(const std::string& name, Eigen::VectorXd& vector, Eigen::Index size, const std::string&) {
+    const auto values = finite(name, {extent(size)});
+    vector = Eigen::Map<const Eigen::VectorXd>(values.data(), size);
+  }
+  void operator()(const std::string& name, std::vector<Eigen::MatrixXd>& tensor, Eigen::Index n,
+                  const std::string&) {
+    const auto values = finite(name, {extent(n), extent(n), extent(n)});
+    tensor.clear();
+    for (Eigen::Index k = 0; k < n; ++k)
+      tensor.emplace_back(Eigen::Map<const RowMajor>(values.data() + k * n * n, n, n));
+  }
+
+private:
+  std::vector<double> finite(const std::string& name, const Shape& shape) const {
+    auto values = file_.read<double>(name, shape);
+    for (const double value : values)
+      if (!std::isfinite(value))
+        throw InputError("'" + name + "' holds a number that is not finite", std::to_string(value),
+                         "finite numbers", file_.path().string());
+    return values;
+  }
+  const Hdf5File& file_;
+};
+
+/// All operators with names, sizes and units. Velocity coefficients are in cm/s of dimensionless basis
+/// vectors, so the rows of u and v carry the unit of power per velocity, dyn; the mixed units of pressure
+/// rows follow from that.
+template <class Visitor, class SomeOperators>
+void visit_operators(Visitor&& visit, SomeOperators& o, Eigen::Index probes) {
+  const Eigen::Index n = o.velocity_modes + o.pressure_modes + o.displacement_modes;
+  visit("operators/mass", o.mass, n, n, "g");
+  visit("operators/linear", o.linear, n, n, "g/s");
+  visit("operators/stiffness", o.stiffness, o.displacement_modes, o.displacement_modes, "g/s^2");
+  visit("operators/convection", o.convection, o.velocity_modes, "g/cm");
+  visit("operators/imposed_mass", o.imposed_mass, n, "g");
+  visit("operators/imposed_linear", o.imposed_linear, n, "g/s");
+  visit("operators/imposed_stiffness", o.imposed_stiffness, n, "g/s^2");
+  visit("operators/head", o.head, n, "cm^2");
+  visit("operators/outflow", o.outflow, o.velocity_modes, "cm^2");
+  visit("operators/inflow", o.inflow, o.velocity_modes, "cm^2");
+  visit("operators/envelope", o.envelope, probes, o.displacement_modes, "1");
+  visit("operators/envelope_imposed", o.envelope_imposed, probes, "1");
+  visit("operators/envelope_radius", o.envelope_radius, probes, "cm");
+}
+
+struct ReferenceColumn {
+  const char* name;
+  double ReferencePoint::*value;
+  const char* unit;
+};
+constexpr ReferenceColumn reference_columns[] = {
+    {"frequency", &ReferencePoint::frequency_Hz, "Hz"},
+    {"stroke", &ReferencePoint::stroke_mm, "mm"},
+    {"head", &ReferencePoint::head_mmHg, "mmHg"},
+    {"flow", &ReferencePoint::flow_l_per_min, "l/min"},
+    {"flow_spread", &ReferencePoint::flow_spread_l_per_min, "l/min"},
+    {"rom_flow", &ReferencePoint::rom_flow_l_per_min, "l/min"},
+    {"velocity_error", &ReferencePoint::velocity_error, "1"},
+    {"envelope_error", &ReferencePoint::envelope_error, "1"},
+    {"fom_seconds", &ReferencePoint::fom_seconds, "s"},
+};
+
+struct BoxSide {
+  const char* name;
+  double TrainingBox::*low;
+  double TrainingBox::*high;
+  const char* unit;
+};
+constexpr BoxSide box_sides[] = {
+    {"frequency", &TrainingBox::frequency_low_Hz, &TrainingBox::frequency_high_Hz, "Hz"},
+    {"stroke", &TrainingBox::stroke_low_mm, &TrainingBox::stroke_high_mm, "mm"},
+    {"head", &TrainingBox::head_low_mmHg, &TrainingBox::head_high_mmHg, "mmHg"},
+};
+
+void write_references(Hdf5File& file, const std::vector<ReferencePoint>& references) {
+  std::vector<double> values(references.size());
+  for (const auto& column : reference_columns) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = references[i].*column.value;
+    file.write(std::string("references/") + column.name, values, {values.size()}, column.unit);
+  }
+  std::vector<int> held_out;
+  for (const auto& reference : references) held_out.push_back(reference.held_out ? 1 : 0);
+  file.write("references/held_out", held_out);
+}
+
+std::vector<ReferencePoint> read_references(const Hdf5File& file) {
+  const auto held_out = file.read<int>("references/held_out");
+  std::vector<ReferencePoint> references(held_out.size());
+  for (const auto& column : reference_columns) {
+    const auto values = file.read<double>(std::string("references/") + column.name, {held_out.size()});
+    for (std::size_t i = 0; i < values.size(); ++i) references[i].*column.value = values[i];
+  }
+  for (std::size_t i = 0; i < held_out.size(); ++i) references[i].held_out = held_out[i] != 0;
+  return references;
+}
+
+int read_count(const Hdf5File& file, const std::string& object, const std::string& name, int least) {
+  const int count = file.read_attribute<int>(object, name);
+  if (count < least)
+    throw InputError("'" + name + "' is too small", std::to_string(count),
+                     "at least " + std::to_string(least), file.path().string());
+  return count;
+}
+
+void check_kind(const Hdf5File& file) {
+  const auto kind =
+      file.has_attribute("/", "kind") ? file.read_attribute<std::string>("/", "kind") : "another program's";
+  if (kind != file_kind)
+    throw InputError("not a reduced model", "a file of kind '" + kind + "'",
+                     std::string("kind '") + file_kind + "'", file.path().string());
+  const int version = file.read_attribute<int>("/", "format_version");
+  if (version != file_version)
+    throw InputError("model file of another format version", std::to_string(version),
+                     std::to_string(file_version), file.path().string());
+}
+
+} // namespace
+
+void save_model(const Model& model, const std::string& name) {
+  auto file = Hdf5File::create(name);
+  file.write_attribute("/", "kind", file_kind);
+  file.write_attribute("/", "format_version", file_version);
+  const auto& o = model.operators;
+  file.create_group("operators");
+  file.write_attribute("operators", "velocity_modes", o.velocity_modes);
+  file.write_attribute("operators", "supremizer_modes", o.supremizer_modes);
+  file.write_attribute("operators", "pressure_modes", o.pressure_modes);
+  file.write_attribute("operators", "displacement_modes", o.displacement_modes);
+  file.write_attribute("operators", "probes", static_cast<int>(o.envelope_radius.size()));
+  visit_operators(Writer(file), o, o.envelope_radius.size());
+  file.write("steps_per_period", std::vector<int>{model.steps_per_period}, {}, "1");
+  for (const auto& side : box_sides)
+    file.write(std::string("training_box/") + side.name,
+               std::vector<double>{model.box.*side.low, model.box.*side.high}, {2}, side.unit);
+  write_references(file, model.references);
+  file.write("error_estimate/safety", std::vector<double>{model.error_safety}, {}, "1");
+  file.write("error_estimate/floor", std::vector<double>{model.error_floor_l_per_min}, {}, "l/min");
+  file.create_group("provenance");
+  for (const auto& [key, text] : model.provenance) file.write_text("provenance/" + key, text);
+  file.commit();
+}
+
+Model load_model(const std::string& name) {
+  const auto file = Hdf5File::open_read(name);
+  check_kind(file);
+  Model model;
+  auto& o = model.operators;
+  o.velocity_modes = read_count(file, "operators", "velocity_modes", 1);
+  o.supremizer_modes = read_count(file, "operators", "supremizer_modes", 0);
+  o.pressure_modes = read_count(file, "operators", "pressure_modes", 0);
+  o.displacement_modes = read_count(file, "operators", "displacement_modes", 0);
+  if (o.supremizer_modes > o.velocity_modes)
+    throw InputError("more supremizers than velocity modes", std::to_string(o.supremizer_modes),
+                     "at most " + std::to_string(o.velocity_modes), name);
+  visit_operators(Reader(file), o, read_count(file, "operators", "probes", 0));
+  model.steps_per_period = file.read<int>("steps_per_period", {}).front();
+  if (model.steps_per_period < 4)
+    throw InputError("'steps_per_period' is too small", std::to_string(model.steps_per_period), "at least 4",
+                     name);
+  for (const auto& side : box_sides) {
+    const auto range = file.read<double>(std::string("training_box/") + side.name, {2});
+    model.box.*side.low = range[0];
+    model.box.*side.high = range[1];
+  }
+  model.references = read_references(file);
+  model.error_safety = file.read<double>("error_estimate/safety", {}).front();
+  model.error_floor_l_per_min = file.read<double>("error_estimate/floor", {}).front();
+  for (const auto& key : file.children("provenance"))
+    model.provenance[key] = file.read_text("provenance/" + key);
+  return model;
+}
+
+} // namespace undula::rom

@@ -1,0 +1,55 @@
+#include "training/campaign/campaign.hpp"
+
+#include <optional>
+
+#include "fom/levels/simulation.hpp"
+#include "training/campaign/periodic_run.hpp"
+#include "training/training.hpp"
+
+namespace undula::training {
+
+namespace {
+
+/// The next point this group may compute, or nothing. Asked on the group's root.
+struct NextPoint {
+  std::optional<Claim> claim;
+  int index = -1;
+};
+
+NextPoint claim_next(std::span<const OperatingPoint> plan, const CampaignStore& store) {
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    if (auto claim = store.try_claim(plan[i])) return {std::move(claim), static_cast<int>(i)};
+  return {};
+}
+
+} // namespace
+
+void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, const CampaignStore& store,
+                  MPI_Comm world, const CampaignProgress& progress) {
+  int world_rank = 0;
+  MPI_Comm_rank(world, &world_rank);
+  MPI_Comm group = MPI_COMM_NULL;
+  MPI_Comm_split(world, world_rank / scene.training.ranks_per_run, world_rank, &group);
+  int rank = 0;
+  MPI_Comm_rank(group, &rank);
+
+  std::unique_ptr<PreparedScene>
+      prepared; // made when the first point is claimed: a finished plan costs nothing
+  PhaseTimer timer;
+  for (;;) {
+    auto next = rank == 0 ? claim_next(plan, store) : NextPoint{};
+    MPI_Bcast(&next.index, 1, MPI_INT, 0, group);
+    if (next.index < 0) break;
+    if (!prepared) prepared = prepare_scene(scene, group, timer);
+    Scene at_point = scene;
+    at_point.operating_point = plan[static_cast<std::size_t>(next.index)];
+    const auto record = periodic_run(*prepared, at_point);
+    if (rank == 0) {
+      store.store(*next.claim, record);
+      if (progress) progress(record, plan.size() - store.status(plan).pending.size(), plan.size());
+    }
+  }
+  MPI_Comm_free(&group);
+}
+
+} // namespace undula::training

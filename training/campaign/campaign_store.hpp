@@ -1,0 +1,100 @@
+// The full-order runs of a campaign on disk: one record per operating point, none lost, none computed twice.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fom/output/scene_stamp.hpp"
+#include "fom/output/time_series.hpp"
+#include "fom/scene/scene.hpp"
+#include "training/training.hpp"
+
+namespace undula::training {
+
+enum class RunState {
+  periodic,     ///< the sampled periods repeat within the tolerance
+  not_periodic, ///< ran to its end, does not repeat
+  failed,       ///< stopped by a NumericsError
+};
+
+struct Snapshots {
+  std::string unit;
+  Eigen::MatrixXd values; ///< [unknown, in a numbering independent of ranks][snapshot]
+};
+
+/// What a run leaves behind.
+struct RunRecord {
+  OperatingPoint point;
+  RunState state = RunState::failed;
+  std::string reason;                         ///< why it failed or does not repeat, else empty
+  std::vector<double> times;                  ///< [snapshot], s
+  std::map<std::string, Snapshots> snapshots; ///< by field; as many columns as `times` has entries
+  CycleMeans cycles;                          ///< of all periods
+  std::map<std::string, double> seconds;      ///< wall time by phase, "total" among them
+};
+
+/// Stamp of a campaign: the scene without its operating point, but with the settings that decide what is
+/// recorded.
+SceneStamp stamp_campaign(const Scene& scene);
+
+/// The right to compute one point. It is a lock of the operating system (flock): it ends with its owner, also
+/// by kill -9, and leaves nothing that could block a later run.
+class Claim {
+public:
+  Claim(Claim&& other) noexcept;
+  Claim& operator=(Claim&&) = delete;
+  ~Claim();
+  const OperatingPoint& point() const { return point_; }
+
+private:
+  friend class CampaignStore;
+  Claim(int lock, const OperatingPoint& point) : lock_(lock), point_(point) {}
+  int lock_ = -1; // file descriptor
+  OperatingPoint point_;
+};
+
+/// Folder with `campaign.h5` (the stamp) and one <point>.h5 per finished run. Any number of processes and
+/// hosts may work on it at once (the file system must support flock). In a parallel run one rank of each
+/// group calls and tells the others.
+///
+///   for (const auto& point : store.status(plan).pending)
+///     if (const auto claim = store.try_claim(point)) store.store(*claim, compute(point));
+class CampaignStore {
+public:
+  /// Opens or creates the folder and removes what killed runs left behind. Throws InputError if the folder
+  /// belongs to another campaign (naming both hashes) or is not empty and no campaign.
+  CampaignStore(const std::filesystem::path& folder, const SceneStamp& stamp);
+
+  struct Status {
+    std::vector<OperatingPoint> pending; ///< without a whole record, in the order of the plan
+    std::vector<std::string> damaged; ///< one message per record that cannot be used and counts as not done
+  };
+  Status status(std::span<const OperatingPoint> plan) const;
+
+  /// Nothing if the point is done or being computed by another process.
+  std::optional<Claim> try_claim(const OperatingPoint& point) const;
+
+  /// Stores the record of a claimed point in one step. Throws InputError for a record of another point or
+  /// one whose shapes disagree.
+  void store(const Claim& claim, const RunRecord& record) const;
+
+  /// Throws InputError if there is no whole record of the point.
+  RunRecord load(const OperatingPoint& point) const;
+
+  std::filesystem::path record_file(const OperatingPoint& point) const;
+
+private:
+  bool is_done(const OperatingPoint& point) const;
+  void check_or_create_stamp() const;
+  void remove_leftovers() const;
+
+  std::filesystem::path folder_;
+  SceneStamp stamp_;
+};
+
+} // namespace undula::training

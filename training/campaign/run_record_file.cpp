@@ -1,0 +1,148 @@
+#include "training/campaign/run_record_file.hpp"
+
+#include <array>
+#include <utility>
+
+#include "rom/base/error.hpp"
+#include "rom/base/hdf5_file.hpp"
+
+namespace undula::training {
+namespace {
+
+constexpr const char* format = "undula run record 1";
+
+constexpr std::array<std::pair<RunState, const char*>, 3> state_names{
+    {{RunState::periodic, "periodic"},
+     {RunState::not_periodic, "not periodic"},
+     {RunState::failed, "failed"}}};
+
+std::string name_of(RunState state) {
+  for (const auto& [value, name] : state_names)
+    if (value == state) return name;
+  return {};
+}
+
+RunState state_of(const std::string& seen, const std::filesystem::path& file) {
+  for (const auto& [value, name] : state_names)
+    if (seen == name) return value;
+  throw InputError("unknown state of a run", seen, "periodic, not periodic, failed", file.string());
+}
+
+Hdf5File open_checked(const std::filesystem::path& path, const std::string& campaign_hash) {
+  auto file = Hdf5File::open_read(path);
+  const auto seen =
+      file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
+  if (seen != format) throw InputError("not a run record", "format: " + seen, format, path.string());
+  const auto hash = file.read_attribute<std::string>("/", "campaign_hash");
+  if (hash != campaign_hash)
+    throw InputError("the record belongs to another campaign", "campaign hash " + hash,
+                     "campaign hash " + campaign_hash, path.string());
+  return file;
+}
+
+void check_shapes(const RunRecord& record, const std::filesystem::path& file) {
+  const auto fail = [&](const std::string& what, std::size_t seen, std::size_t allowed) {
+    throw InputError("run record does not fit together: " + what, std::to_string(seen),
+                     std::to_string(allowed), file.string());
+  };
+  for (const auto& [name, field] : record.snapshots)
+    if (const auto columns = static_cast<std::size_t>(field.values.cols()); columns != record.times.size())
+      fail("snapshots of " + name, columns, record.times.size());
+  const auto& cycles = record.cycles;
+  const auto count = cycles.columns.size() * cycles.periods.size();
+  for (const auto* values : {&cycles.mean, &cycles.minimum, &cycles.maximum})
+    if (values->size() != count) fail("cycle means", values->size(), count);
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += name + "\n";
+  return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const auto end = text.find('\n', begin);
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end == std::string::npos ? text.size() : end + 1;
+  }
+  return lines;
+}
+
+} // namespace
+
+void write_run_record(const RunRecord& record, const std::string& campaign_hash,
+                      const std::filesystem::path& target) {
+  check_shapes(record, target);
+  auto file = Hdf5File::create(target);
+  file.write_attribute("/", "format", format);
+  file.write_attribute("/", "campaign_hash", campaign_hash);
+  file.write_attribute("/", "state", name_of(record.state));
+  file.write_text("reason", record.reason);
+  const auto put = [&](const std::string& name, double value, const char* unit) {
+    file.write(name, std::span(&value, 1), {}, unit);
+  };
+  put("point/frequency", record.point.frequency, "Hz");
+  put("point/stroke", record.point.stroke, "cm");
+  put("point/head", record.point.head, "dyn/cm^2");
+  file.write("times", std::span(record.times), {record.times.size()}, "s");
+  // A column-major [unknown][snapshot] matrix is a row-major [snapshot][unknown] array.
+  file.create_group("snapshots");
+  for (const auto& [name, field] : record.snapshots)
+    file.write("snapshots/" + name,
+               std::span(field.values.data(), static_cast<std::size_t>(field.values.size())),
+               {static_cast<std::size_t>(field.values.cols()), static_cast<std::size_t>(field.values.rows())},
+               field.unit);
+  const auto& cycles = record.cycles;
+  const Hdf5File::Shape shape{cycles.periods.size(), cycles.columns.size()};
+  file.write_text("cycles/columns", joined(cycles.columns));
+  file.write("cycles/periods", std::span(cycles.periods));
+  file.write("cycles/mean", std::span(cycles.mean), shape);
+  file.write("cycles/minimum", std::span(cycles.minimum), shape);
+  file.write("cycles/maximum", std::span(cycles.maximum), shape);
+  file.create_group("seconds");
+  for (const auto& [phase, seconds] : record.seconds) put("seconds/" + phase, seconds, "s");
+  file.commit();
+}
+
+RunRecord read_run_record(const std::filesystem::path& path, const std::string& campaign_hash) {
+  const auto file = open_checked(path, campaign_hash);
+  const auto get = [&](const std::string& name) { return file.read<double>(name, {}).front(); };
+  RunRecord record;
+  record.point = {get("point/frequency"), get("point/stroke"), get("point/head")};
+  record.state = state_of(file.read_attribute<std::string>("/", "state"), path);
+  record.reason = file.read_text("reason");
+  record.times = file.read<double>("times");
+  for (const auto& name : file.children("snapshots")) {
+    const auto dataset = "snapshots/" + name;
+    const auto extents = file.extents(dataset);
+    if (extents.size() != 2)
+      throw InputError("snapshots of " + name + " are no matrix",
+                       std::to_string(extents.size()) + " dimensions", "2", path.string());
+    const auto values = file.read<double>(dataset);
+    record.snapshots[name] = {file.unit(dataset), Eigen::Map<const Eigen::MatrixXd>(
+                                                      values.data(), static_cast<Eigen::Index>(extents[1]),
+                                                      static_cast<Eigen::Index>(extents[0]))};
+  }
+  record.cycles.columns = lines_of(file.read_text("cycles/columns"));
+  record.cycles.periods = file.read<int>("cycles/periods");
+  record.cycles.mean = file.read<double>("cycles/mean");
+  record.cycles.minimum = file.read<double>("cycles/minimum");
+  record.cycles.maximum = file.read<double>("cycles/maximum");
+  for (const auto& phase : file.children("seconds")) record.seconds[phase] = get("seconds/" + phase);
+  check_shapes(record, path);
+  return record;
+}
+
+void check_run_record(const std::filesystem::path& path, const std::string& campaign_hash) {
+  const auto file = open_checked(path, campaign_hash);
+  state_of(file.read_attribute<std::string>("/", "state"), path);
+  // HDF5 finds a truncated file on opening; what is asked for here is that nothing is missing.
+  for (const auto* name : {"reason", "point", "times", "snapshots", "cycles", "seconds"})
+    if (!file.exists(name))
+      throw InputError("incomplete run record", std::string("no '") + name + "'", "a whole record",
+                       path.string());
+}
+
+} // namespace undula::training
