@@ -21,8 +21,8 @@ public:
   /// Brings `disc` and `operators` to where `state` has its geometry. Both are replaced at every step and
   /// have to outlive the stepper. Throws InputError if the state does not fit that geometry.
   MovingStepper(Discretisation<dim>& disc, Operators<dim>& operators, Coupling coupling,
-                const SteppingSettings& settings, const ContactSettings& contact, double dt, PhaseTimer& timer,
-                const State& state);
+                const SteppingSettings& settings, const ContactSettings& contact, double dt,
+                PhaseTimer& timer, const State& state);
 
   /// One regular step, in parts where the numerics or the geometry fail at the whole one. Phases "cut",
   /// "transfer" besides those of TimeStepper. Collective; throws NumericsError on every rank, leaving

@@ -1,4 +1,5 @@
-// How a problem is stepped in time: scheme, Newton's method, how the fluid's domain follows the solids, contact.
+// How a problem is stepped in time: scheme, Newton's method, how the fluid's domain follows the solids,
+// contact.
 #pragma once
 
 namespace undula::fom {

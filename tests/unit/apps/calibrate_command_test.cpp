@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/apps.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_value.hpp"
 #include "tests/unit/apps/run_undula.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/apps.hpp"
 #include "apps/input/head_list.hpp"
 #include "apps/input/validation.hpp"
 #include "apps/output/progress.hpp"

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/apps.hpp"
 #include "apps/output/gnuplot.hpp"
 #include "rom/base/error.hpp"
 #include "tests/unit/apps/run_undula.hpp"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "apps/apps.hpp"
 #include "apps/output/level_report.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 

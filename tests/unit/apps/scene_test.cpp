@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/apps.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_key_search.hpp"
 #include "fom/scene/scene_reference.hpp"

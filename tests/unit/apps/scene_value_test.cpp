@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/apps.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_table.hpp"

@@ -8,6 +8,7 @@
 #include <random>
 #include <thread>
 
+#include "apps/apps.hpp"
 #include "fom/output/checkpoint.hpp"
 #include "fom/output/time_series.hpp"
 #include "rom/base/hdf5_file.hpp"

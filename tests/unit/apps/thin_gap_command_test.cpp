@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/apps.hpp"
 #include "fom/output/checkpoint.hpp"
 #include "fom/output/time_series.hpp"
 #include "rom/base/hdf5_file.hpp"

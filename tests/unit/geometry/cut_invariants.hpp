@@ -13,7 +13,7 @@
 #include "geometry/cut/cut.hpp"
 #include "geometry/mesh/box_grid.hpp"
 
-namespace undula::test {
+namespace undula::geometry::test {
 
 using Mesh = SimplexMesh<2>;
 using Polygon = std::vector<std::array<long double, 2>>;
@@ -237,4 +237,4 @@ inline double skin_in_box(const Solids& solids, double x0, double y0, double x1,
   return length;
 }
 
-} // namespace undula::test
+} // namespace undula::geometry::test

@@ -8,6 +8,7 @@
 
 #include "rom/base/error.hpp"
 #include "training/calibration/identifiability.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

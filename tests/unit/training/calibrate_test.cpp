@@ -9,6 +9,7 @@
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "rom/base/error.hpp"
 #include "training/campaign/run_record_file.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

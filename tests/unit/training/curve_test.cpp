@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rom/base/units.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "rom/base/error.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "fom/system/handles.hpp"
 #include "rom/base/error.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

@@ -10,6 +10,7 @@
 #include "rom/fixed_domain/periodic.hpp"
 #include "training/campaign/periodic_run.hpp"
 #include "training/reduction/judge.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {

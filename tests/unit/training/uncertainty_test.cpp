@@ -10,6 +10,7 @@
 #include "fom/scene/scene_tolerance.hpp"
 #include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
+#include "training/training.hpp"
 
 namespace undula::training {
 namespace {
