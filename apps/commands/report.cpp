@@ -3,8 +3,6 @@
 //   undula report data/scenes/wave_pump_thin_gap.toml data/models/wave_pump_fixed.h5
 //     --data data/measured/corwave_120hz_0.53mm.csv --frequency 120 --stroke 0.53 --plot report.png
 //   undula report data/scenes/wave_pump_thin_gap.toml --vary thin_gap.cells=32,64,128 --data ...
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -14,18 +12,16 @@
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
+#include "apps/input/level_source.hpp"
 #include "apps/input/measured_curve.hpp"
-#include "apps/input/scene_flow.hpp"
+#include "apps/input/recorded_curve.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/curve_warnings.hpp"
 #include "apps/output/gnuplot.hpp"
-#include "apps/output/hq_report.hpp"
 #include "apps/output/level_report.hpp"
-#include "apps/output/scene_curve.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
-#include "rom/curve/hq_curve.hpp"
-#include "training/campaign/curve.hpp"
 
 namespace undula::apps {
 namespace {
@@ -68,50 +64,32 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-LevelResult compute_scene(const ReportOptions& options, const std::string& file,
-                          const std::vector<std::string>& overrides, std::span<const double> heads,
-                          MPI_Comm comm) {
-  const Scene scene = read_scene_at(file, overrides, options.frequency_Hz, options.stroke_mm);
+/// A scene or a reduced model, computed now.
+LevelResult compute(const ReportOptions& options, const std::string& file,
+                    const std::vector<std::string>& overrides, std::span<const double> heads, MPI_Comm comm) {
+  const LevelSource source = read_level_source(file, overrides, options.frequency_Hz, options.stroke_mm);
   const auto begin = std::chrono::steady_clock::now();
   PhaseTimer timer;
-  PreparedLevel level = prepare_level(scene, comm, timer);
+  const auto level = prepare(source, comm, timer);
+  const std::vector<CurvePoint> points = level->curve(source.scene, heads);
   LevelResult result;
-  result.level = scene.space == Space::thin_gap ? "thin-gap" : "full order, fixed";
+  result.level = level->name();
   result.source = file;
   for (const std::string& text : overrides) {
     result.source += ", " + text;
   }
-  result.unknowns = unknowns(level);
-  for (const CurvePoint& point : head_flow_curve(level, scene, heads)) {
+  result.unknowns = level->unknowns();
+  for (const CurvePoint& point : points) {
     result.flow.push_back(point.flow_l_per_min);
   }
   result.seconds_per_point = seconds_since(begin) / static_cast<double>(heads.size());
-  return result;
-}
-
-LevelResult compute_model(const ReportOptions& options, const std::string& file,
-                          std::span<const double> heads) {
-  const rom::Model model = rom::load_model(file);
-  const auto begin = std::chrono::steady_clock::now();
-  LevelResult result;
-  result.level = "reduced model";
-  result.source = file;
-  const auto& sizes = model.operators;
-  result.unknowns = sizes.velocity_modes + sizes.pressure_modes + sizes.displacement_modes;
-  for (const auto& point : rom::hq_curve(model, options.frequency_Hz, options.stroke_mm, heads)) {
-    result.flow.push_back(point.flow_l_per_min);
-  }
-  result.seconds_per_point = seconds_since(begin) / static_cast<double>(heads.size());
-  for (const auto& line :
-       rom::outside_training_box(model.box, options.frequency_Hz, options.stroke_mm, heads)) {
-    spdlog::warn("{}: {}", file, line);
-  }
+  on_root(comm, [&] { warn_of_curve(*level, source.scene, points); });
   return result;
 }
 
 /// Flows at `heads` by linear interpolation between the recorded ones; NaN outside of them.
 LevelResult read_runs(const ReportOptions& options, const std::string& file, std::span<const double> heads) {
-  const SceneCurve curve = read_scene_curve(file);
+  const RecordedCurve curve = read_recorded_curve(file);
   if (!same_setting(curve.frequency_Hz, options.frequency_Hz) ||
       !same_setting(curve.stroke_mm, options.stroke_mm)) {
     throw InputError("recorded runs belong to another operating point",
@@ -160,25 +138,24 @@ void report(const ReportOptions& options, MPI_Comm comm) {
   // 2. Every level, as it is and varied.
   int model = -1, runs = -1;
   for (const std::string& file : options.files) {
-    const auto extension = std::filesystem::path(file).extension();
-    if (extension == ".toml") {
-      table.results.push_back(compute_scene(options, file, {}, table.head_mmHg, comm));
+    if (is_scene(file)) {
+      table.results.push_back(compute(options, file, {}, table.head_mmHg, comm));
       for (const Variation& variation : variations) {
         const int finest = static_cast<int>(table.results.size() + variation.values.size()) - 1;
         for (const std::string& value : variation.values) {
           table.results.push_back(
-              compute_scene(options, file, {variation.key + "=" + value}, table.head_mmHg, comm));
+              compute(options, file, {variation.key + "=" + value}, table.head_mmHg, comm));
           if (static_cast<int>(table.results.size()) - 1 != finest) {
             table.results.back().reference = finest;
           }
         }
       }
-    } else if (extension == ".json") {
+    } else if (std::filesystem::path(file).extension() == ".json") {
       runs = static_cast<int>(table.results.size());
       table.results.push_back(read_runs(options, file, table.head_mmHg));
     } else {
       model = static_cast<int>(table.results.size());
-      table.results.push_back(compute_model(options, file, table.head_mmHg));
+      table.results.push_back(compute(options, file, {}, table.head_mmHg, comm));
     }
   }
   if (model >= 0 && runs >= 0) { // recorded runs beside one reduced model are those it should repeat

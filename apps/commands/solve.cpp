@@ -16,13 +16,13 @@
 #include "apps/output/progress.hpp"
 #include "apps/output/solve_plots.hpp"
 #include "apps/output/text_table.hpp"
-#include "fom/levels/level.hpp"
-#include "fom/levels/scene_problem.hpp"
+#include "fom/levels/march.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/output/run_directory.hpp"
 #include "fom/output/series_statistics.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::apps {
@@ -134,14 +134,14 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
 
   // 2. Prepare what the scene's level needs: meshes, cut, operators, or coefficients.
   PhaseTimer timer;
-  PreparedLevel level = prepare_level(scene, comm, timer);
+  const auto level = prepare_level(scene, comm, timer);
 
   // 3. The output, and the state to go on from.
-  State state = initial_state(level);
+  State state = level->initial_state();
   std::optional<RunDirectory> output; // on rank 0
   on_root(comm, [&] {
     const auto scope = timer.measure("output");
-    output.emplace(folder, view_level(level, scene), scene, existing, ranks, state);
+    output.emplace(folder, level->view(scene), scene, existing, ranks, state);
     if (options.restart) {
       spdlog::info("{} goes on from step {}", folder, state.step);
     }
@@ -156,7 +156,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
     if (rank == 0) {
       progress.emplace("solve", std::max(steps, 0));
     }
-    march(level, scene, state, timer, [&](const State& now, const Observation& seen) {
+    march(*level, scene, state, timer, [&](const State& now, const Observation& seen) {
       const auto scope = timer.measure("output");
       on_root(comm, [&] {
         output->record(now, seen);
@@ -174,7 +174,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   // 5. Write.
   on_root(comm, [&] {
     output->finish(state, timer);
-    const SolvedRun run = summary(scene, *output, unknowns(level), ranks, first_step, state.step);
+    const SolvedRun run = summary(scene, *output, level->unknowns(), ranks, first_step, state.step);
     if (scene.coupling == Coupling::fixed && !run.periods.empty() &&
         run.periods.back().clearance_min_mm < 0) {
       spdlog::warn(

@@ -13,7 +13,6 @@
 #include "apps/mpi_session.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
-#include "fom/levels/scene_problem.hpp"
 #include "fom/output/provenance.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -22,6 +21,7 @@
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
 #include "training/reduction/build_model.hpp"
+#include "training/sampling/trainable_scene.hpp"
 
 namespace undula::apps {
 namespace {
@@ -112,28 +112,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
 
   // 1. The scene, the plan, and the folder of the runs.
   const Scene scene = read_scene(options.scene, options.overrides);
-  require_pump(scene, "undula train");
-  if (scene.space == Space::thin_gap) {
-    throw InputError("a thin-gap scene needs no reduced model", "model.space = \"thin-gap\"",
-                     "undula hq on the scene itself, which takes seconds; or a scene of finite elements",
-                     scene.file.string() + ", section [model]");
-  }
-  if (scene.coupling != Coupling::fixed) {
-    throw InputError("a reduced model is projected from operators that never change",
-                     "a model.coupling that moves the fluid's domain", "coupling = \"fixed\"",
-                     scene.file.string() + ", section [model]");
-  }
-  if (scene.solid_model != SolidModel::linear) {
-    throw InputError("a reduced model is projected from linear operators of the solid",
-                     "a model.solid with a nonlinear law", "solid = \"linear\"",
-                     scene.file.string() + ", section [model]");
-  }
-  if (scene.operating_point.stroke_scale != 1) {
-    throw InputError("a campaign states the stroke that the holder makes",
-                     "operating_point.stroke_scale = " + shortest(scene.operating_point.stroke_scale),
-                     "1; ask the reduced model for the scaled stroke instead",
-                     scene.file.string() + ", section [operating_point]");
-  }
+  require_trainable(scene);
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
   const SamplingPlan plan = plan_samples(scene.training);

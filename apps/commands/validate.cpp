@@ -1,12 +1,11 @@
 // undula validate model.h5|scene.toml --data measured.csv: the benchmark's algorithm. Read the measured
-// curve, extract points, run the model at their heads, average over the last period, plot, 2-norm of the
-// errors.
+// curve, extract points, find the periodic state at their heads, average over its last period, plot, 2-norm
+// of the errors.
 //   undula validate data/models/wave_pump_fixed.h5 --frequency 120 --stroke 0.53 --head 50,55,60
 //     --data data/measured/corwave_120hz_0.53mm.csv --plot validation.png
 //   undula validate data/scenes/wave_pump_fixed.toml --points 3 --data data/measured/corwave_120hz_0.53mm.csv
-#include <spdlog/spdlog.h>
-
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,9 +13,10 @@
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
-#include "apps/input/scene_flow.hpp"
+#include "apps/input/level_source.hpp"
 #include "apps/input/validation.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/curve_warnings.hpp"
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/plots.hpp"
 #include "apps/output/progress.hpp"
@@ -24,14 +24,12 @@
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
-#include "rom/curve/hq_curve.hpp"
-#include "rom/fixed_domain/model.hpp"
 
 namespace undula::apps {
 namespace {
 
 struct ValidateOptions {
-  std::string model;
+  std::string file;
   std::vector<std::string> overrides;
   std::string data;
   std::optional<double> frequency_Hz;
@@ -48,17 +46,6 @@ struct Comparison {
   MeasuredCurve curve;
   std::vector<double> heads;
 };
-
-/// The reduced model as a function of the head; `frequency` and `stroke` stay as asked.
-FlowAtHead flow_of_model(const rom::Model& model, double frequency_Hz, double stroke_mm) {
-  return [&model, frequency_Hz, stroke_mm](double head_mmHg) {
-    rom::HqOptions options;
-    options.estimate_errors = false;
-    return rom::hq_curve(model, frequency_Hz, stroke_mm, std::span(&head_mmHg, 1), options)
-        .front()
-        .flow_l_per_min;
-  };
-}
 
 std::string table_text(const Validation& validation) {
   std::vector<std::vector<std::string>> rows;
@@ -121,84 +108,54 @@ Comparison read_comparison(const ValidateOptions& options) {
   return comparison;
 }
 
-void report(const ValidateOptions& options, const MeasuredCurve& curve, const Validation& validation,
-            double frequency_Hz, double stroke_mm) {
-  std::cout << (options.json ? json_text(validation, curve.fit) : table_text(validation));
-  if (!options.picture.empty()) {
-    plot(options.picture, curve, validation,
-         shortest(frequency_Hz) + " Hz, stroke " + shortest(stroke_mm) + " mm");
-  }
-}
-
-void validate_model(const ValidateOptions& options) {
-  // 1. Read the measured curve and choose the heads.
+void run(const ValidateOptions& options, MPI_Comm comm) {
+  // 1. Read the measured curve and the scene or model; choose the heads.
   const Comparison comparison = read_comparison(options);
-  if (!options.overrides.empty() || !options.petsc.empty()) {
-    throw InputError("options of scenes do not go with a reduced model", options.model,
-                     "a scene (.toml) with --set and options for PETSc", "the command line");
-  }
-  if (!options.frequency_Hz || !options.stroke_mm) {
-    throw CLI::RequiredError(options.frequency_Hz ? "--stroke" : "--frequency");
-  }
+  const LevelSource source =
+      read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm);
+  const Scene& scene = source.scene;
 
-  // 2. The model.
-  const rom::Model model = rom::load_model(options.model);
-  for (const std::string& line :
-       rom::outside_training_box(model.box, *options.frequency_Hz, *options.stroke_mm, comparison.heads)) {
-    spdlog::warn("{}", line);
-  }
-
-  // 3. Run it at those heads; every flow is a mean over the last period.
-  const FlowAtHead flow_at = flow_of_model(model, *options.frequency_Hz, *options.stroke_mm);
-  Validation validation;
-  {
-    Progress progress("validate", static_cast<long>(comparison.heads.size()));
-    long done = 0;
-    validation = validate(comparison.curve, comparison.heads, [&](double head) {
-      const double flow = flow_at(head);
-      progress.update(++done);
-      return flow;
-    });
-  }
-
-  // 4. Compare.
-  report(options, comparison.curve, validation, *options.frequency_Hz, *options.stroke_mm);
-}
-
-void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
-  // 1. Read the scene and the measured curve; choose the heads.
-  const Comparison comparison = read_comparison(options);
-  const Scene scene =
-      read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
-
-  // 2. Meshes and operators, or coefficients, shared by all heads.
+  // 2. Meshes and operators, coefficients, or modes, shared by all heads.
   PhaseTimer timer;
-  PreparedLevel level = prepare_level(scene, comm, timer);
+  const auto level = prepare(source, comm, timer);
 
-  // 3. Run it at those heads; every flow is a mean over the last period.
+  // 3. The periodic state at those heads; every flow is a mean over its last periods.
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  Validation validation;
+  std::vector<CurvePoint> points;
   {
-    const long steps = static_cast<long>(scene.time.periods) * scene.time.steps_per_period;
     std::optional<Progress> progress;
     if (rank == 0) {
-      progress.emplace("validate", steps * static_cast<long>(comparison.heads.size()));
+      progress.emplace("validate", static_cast<long>(comparison.heads.size()));
     }
     long done = 0;
-    const std::function<void()> on_step = [&] {
+    points = level->curve(scene, comparison.heads, [&] {
       ++done;
       if (progress) {
         progress->update(done);
       }
-    };
-    validation = validate(comparison.curve, comparison.heads, flow_of_scene(level, scene, on_step));
+    });
   }
 
   // 4. Compare.
   on_root(comm, [&] {
-    report(options, comparison.curve, validation, scene.operating_point.frequency,
-           units::length_to_mm(scene.operating_point.stroke));
+    warn_of_curve(*level, scene, points);
+    std::vector<double> flows;
+    for (const CurvePoint& point : points) {
+      if (!std::isfinite(point.flow_l_per_min)) {
+        throw NumericsError("a head has no flow to compare: " + point.reason,
+                            shortest(point.head_mmHg) + " mmHg",
+                            "other heads with --head, or a smaller step");
+      }
+      flows.push_back(point.flow_l_per_min);
+    }
+    const Validation validation = validate(comparison.curve, comparison.heads, flows);
+    std::cout << (options.json ? json_text(validation, comparison.curve.fit) : table_text(validation));
+    if (!options.picture.empty()) {
+      plot(options.picture, comparison.curve, validation,
+           level->name() + ": " + shortest(scene.operating_point.frequency) + " Hz, stroke " +
+               shortest(units::length_to_mm(scene.operating_point.stroke)) + " mm");
+    }
   });
 }
 
@@ -207,9 +164,7 @@ void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
 void add_validate_command(CLI::App& app) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = app.add_subcommand("validate", "Compare a model with a measured head-flow curve");
-  command
-      ->add_option("model", options->model,
-                   "model file (HDF5) made by undula train, or a scene (.toml) for the full-order model")
+  command->add_option("model", options->file, "model file (HDF5) made by undula train, or a scene (.toml)")
       ->required();
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)")->required();
   command->add_option("--frequency", options->frequency_Hz,
@@ -229,13 +184,7 @@ void add_validate_command(CLI::App& app) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("petsc", options->petsc, "of a scene: options for PETSc, after --");
-  command->callback([options] {
-    if (std::filesystem::path(options->model).extension() == ".toml") {
-      run_parallel(options->petsc, [&](MPI_Comm comm) { validate_scene(*options, comm); });
-    } else {
-      validate_model(*options);
-    }
-  });
+  command->callback([options] { run_parallel(options->petsc, [&](MPI_Comm comm) { run(*options, comm); }); });
 }
 
 } // namespace undula::apps

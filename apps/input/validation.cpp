@@ -5,12 +5,12 @@
 namespace undula::apps {
 
 Validation validate(const MeasuredCurve& curve, std::span<const double> heads_mmHg,
-                    const FlowAtHead& flow_at) {
+                    std::span<const double> computed_l_per_min) {
   Validation validation;
   double to_fit = 0;
   double to_nearest = 0;
   for (const ExtractedPoint& measured : extract_points(curve, heads_mmHg)) {
-    const double computed = flow_at(measured.head_mmHg);
+    const double computed = computed_l_per_min[validation.points.size()];
     to_fit += std::pow(computed - measured.fit_l_per_min, 2);
     to_nearest += std::pow(computed - measured.nearest_l_per_min, 2);
     validation.points.push_back({measured, computed});

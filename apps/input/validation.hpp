@@ -1,16 +1,12 @@
 // The benchmark's algorithm: compare a model with a measured curve at a few heads.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "apps/input/measured_curve.hpp"
 
 namespace undula::apps {
-
-/// Flow (l/min, mean over the last period) that a model gives at a head (mmHg).
-using FlowAtHead = std::function<double(double head_mmHg)>;
 
 /// One compared head; flows in l/min.
 struct ValidatedPoint {
@@ -25,9 +21,9 @@ struct Validation {
   double norm_to_nearest_l_per_min = 0; ///< measured = the nearest sample
 };
 
-/// Runs the model once per head, in the order given, and compares.
-/// Throws InputError for heads outside the measured range, before anything is run.
+/// Compares computed flows (l/min) at heads, in the order given. Throws InputError for heads outside the
+/// measured range.
 Validation validate(const MeasuredCurve& curve, std::span<const double> heads_mmHg,
-                    const FlowAtHead& flow_at);
+                    std::span<const double> computed_l_per_min);
 
 } // namespace undula::apps

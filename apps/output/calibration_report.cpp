@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/apps.hpp"
+#include "apps/output/curve_report.hpp"
 #include "apps/output/gnuplot.hpp"
-#include "apps/output/hq_report.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "rom/base/text_file.hpp"

@@ -6,8 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "apps/output/curve_report.hpp"
 #include "apps/output/gnuplot.hpp"
-#include "apps/output/hq_report.hpp"
 #include "apps/output/text_table.hpp"
 
 namespace undula::apps {

@@ -10,7 +10,7 @@ namespace undula::apps {
 
 /// One computation at the heads of the comparison. Flows in l/min; NaN where there is none.
 struct LevelResult {
-  std::string level;            ///< "thin-gap", "axisymmetric, fixed", "reduced model"
+  std::string level;            ///< Level::name, or "full order, recorded"
   std::string source;           ///< file, and what was varied in it
   int unknowns = 0;             ///< of one time step
   std::vector<double> flow;     ///< at the heads

@@ -17,6 +17,8 @@ MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& ope
                                   const SteppingSettings& settings, const ContactSettings& contact, double dt,
                                   PhaseTimer& timer, const State& state)
     : disc_(disc), operators_(operators), coupling_(coupling), settings_(settings), dt_(dt), timer_(timer) {
+  // Contact and extension are prepared at rest: a march before may have left the domain moved.
+  disc_.map = {};
   if (contact.film > 0) contact_ = prepare_contact(disc_, contact);
   if (coupling_ == Coupling::mapped) {
     const auto scope = timer_.measure("map");
@@ -75,15 +77,12 @@ void MovingStepper<dim>::solve_placed(const Eigen::VectorXd& placement, double t
   constexpr int most = 12;
   constexpr double accuracy = 0.02;
   const State placed = state;
-  const SparseMatrix elastic = operators_.stiffness;
   ContactBalance balance;
   balance.linearised = placement;
   for (int iteration = 1; iteration <= most; ++iteration) {
     auto film = contact_force(*contact_, disc_, balance.linearised);
     report_.contact_nodes = std::max(report_.contact_nodes, film.nodes);
     report_.contact_iterations = std::max(report_.contact_iterations, iteration);
-    if (operators_.rank == 0) operators_.stiffness = elastic + film.stiffness;
-    stepper_->system().refresh();
     stepper_->set_contact(std::move(film));
     state = placed;
     stepper_->advance_to(t, state);

@@ -16,8 +16,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "fom/levels/level_view.hpp"
 #include "fom/output/checkpoint.hpp"
+#include "fom/output/level_view.hpp"
 #include "fom/output/step_table.hpp"
 #include "fom/scene/scene.hpp"
 #include "rom/base/phase_timer.hpp"

@@ -11,6 +11,9 @@ enum class Coupling {
   implicit,  ///< fluid domain and displacement of the same instant: cut and solve in turns (thin gap: Newton)
 };
 
+/// The word for it in scenes and results.
+const char* coupling_name(Coupling coupling);
+
 /// Where the solids are expected at the end of a step.
 enum class Extrapolation {
   first, ///< d + dt v

@@ -5,8 +5,9 @@
 #include <numbers>
 
 #include "fom/fom.hpp"
-#include "fom/levels/scene_problem.hpp"
+#include "fom/scene/common_problem.hpp"
 #include "fom/scene/expression.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"

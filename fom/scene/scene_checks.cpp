@@ -56,20 +56,6 @@ void check_damping(const Scene& scene, const std::string& where) {
   }
 }
 
-std::string coupling_name(Coupling coupling) {
-  switch (coupling) {
-    case Coupling::fixed:
-      return "fixed";
-    case Coupling::mapped:
-      return "mapped";
-    case Coupling::explicit_:
-      return "explicit";
-    case Coupling::implicit:
-      return "implicit";
-  }
-  return "";
-}
-
 void check_contact(const Scene& scene, const std::string& where) {
   const ContactSettings& contact = scene.contact;
   if (scene.space == Space::thin_gap &&
@@ -98,7 +84,7 @@ void check_levels(const Scene& scene, const std::string& where) {
   const bool thin_gap = scene.space == Space::thin_gap;
   if (thin_gap && scene.coupling != Coupling::implicit) {
     throw InputError("the geometric coupling does not go with the space",
-                     "coupling = \"" + coupling_name(scene.coupling) + "\" in thin gaps",
+                     std::string("coupling = \"") + coupling_name(scene.coupling) + "\" in thin gaps",
                      "coupling = \"implicit\": gaps follow the membrane", where + ", section [model]");
   }
   if (!thin_gap && scene.solid_model == SolidModel::von_karman) {

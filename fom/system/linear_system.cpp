@@ -154,17 +154,22 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
 }
 
 template <int dim>
+void LinearSystem<dim>::add_constant(const SparseMatrix& matrix, double factor) {
+  for (int row = 0; row < disc_.unknowns(); ++row) {
+    int place = row_begin_[row];
+    for (int k = matrix.outerIndexPtr()[row]; k < matrix.outerIndexPtr()[row + 1]; ++k) {
+      const int column = matrix.innerIndexPtr()[k];
+      while (columns_[place] < column) ++place; // the pattern holds every column
+      constant_[place] += factor * matrix.valuePtr()[k];
+    }
+  }
+}
+
+template <int dim>
 void LinearSystem<dim>::sum_constant_terms(const SystemFactors& factors) {
   constant_.assign(columns_.size(), 0.0);
-  for (const auto& [matrix, factor] : constant_terms(operators_, factors))
-    for (int row = 0; row < disc_.unknowns(); ++row) {
-      int place = row_begin_[row];
-      for (int k = matrix->outerIndexPtr()[row]; k < matrix->outerIndexPtr()[row + 1]; ++k) {
-        const int column = matrix->innerIndexPtr()[k];
-        while (columns_[place] < column) ++place; // the pattern holds every column of the operators
-        constant_[place] += factor * matrix->valuePtr()[k];
-      }
-    }
+  for (const auto& [matrix, factor] : constant_terms(operators_, factors)) add_constant(*matrix, factor);
+  if (added_stiffness_) add_constant(*added_stiffness_, factors.stiffness);
 }
 
 template <int dim>
@@ -197,19 +202,22 @@ void LinearSystem<dim>::write(std::vector<double>& values) {
 }
 
 template <int dim>
+bool LinearSystem<dim>::has_places_for(const SparseMatrix& matrix) const {
+  for (int row = 0; row < disc_.unknowns(); ++row) {
+    int place = row_begin_[row];
+    for (int k = matrix.outerIndexPtr()[row]; k < matrix.outerIndexPtr()[row + 1]; ++k) {
+      while (place < row_begin_[row + 1] && columns_[place] < matrix.innerIndexPtr()[k]) ++place;
+      if (place == row_begin_[row + 1] || columns_[place] != matrix.innerIndexPtr()[k]) return false;
+    }
+  }
+  return true;
+}
+
+template <int dim>
 void LinearSystem<dim>::refresh() {
-  const auto same = [&] {
-    for (const auto& [matrix, factor] : constant_terms(operators_, {}))
-      for (int row = 0; row < disc_.unknowns(); ++row) {
-        int place = row_begin_[row];
-        for (int k = matrix->outerIndexPtr()[row]; k < matrix->outerIndexPtr()[row + 1]; ++k) {
-          while (place < row_begin_[row + 1] && columns_[place] < matrix->innerIndexPtr()[k]) ++place;
-          if (place == row_begin_[row + 1] || columns_[place] != matrix->innerIndexPtr()[k]) return false;
-        }
-      }
-    return true;
-  };
-  int fits = same();
+  int fits = 1;
+  for (const auto& [matrix, factor] : constant_terms(operators_, {})) fits = fits && has_places_for(*matrix);
+  fits = fits && (!added_stiffness_ || has_places_for(*added_stiffness_));
   check_petsc(
       static_cast<PetscErrorCode>(MPI_Allreduce(MPI_IN_PLACE, &fits, 1, MPI_INT, MPI_LAND, operators_.comm)),
       "comparing patterns");
@@ -217,6 +225,12 @@ void LinearSystem<dim>::refresh() {
     throw NumericsError("new operators have entries that the system matrix was not made for",
                         "a refresh of the linear system", "a new linear system for every new cut");
   factors_.reset();
+}
+
+template <int dim>
+void LinearSystem<dim>::add_stiffness(const SparseMatrix* added) {
+  added_stiffness_ = added;
+  refresh();
 }
 
 template <int dim>

@@ -9,8 +9,9 @@
 namespace undula::fom {
 
 /// Factors of the operators in the system matrix
-///   mass * mass + physical + stabilisation + damping * damping + stiffness * stiffness + convection(b) +
-///   jumps(b).
+///   mass * mass + physical + stabilisation + damping * damping + stiffness * (stiffness + added) +
+///   convection(b) + jumps(b),
+/// `added` the stiffness of forces that are no part of the operators (contact).
 struct SystemFactors {
   double mass = 0;
   double stiffness = 0;
@@ -37,6 +38,10 @@ public:
   /// NumericsError on every rank if an entry has no place in the pattern.
   void refresh();
 
+  /// Adds a stiffness to that of the operators (this rank's share; null: none, as at first) until another one
+  /// takes its place. It has to outlive its use. Collective; throws as `refresh`.
+  void add_stiffness(const SparseMatrix* added);
+
   /// Replaces the tangents of the share's nonlinear cells and nothing else. Phase "assemble". Collective.
   void replace_tangents(const std::vector<typename CellResponse<dim>::Derivatives>& tangents);
 
@@ -53,6 +58,8 @@ public:
 private:
   void collect_pattern();
   int place_of(int row, int column) const;
+  bool has_places_for(const SparseMatrix& matrix) const;
+  void add_constant(const SparseMatrix& matrix, double factor);
   void sum_constant_terms(const SystemFactors& factors);
   void fill(Vec vector, const Eigen::VectorXd& values); ///< with this rank's share of them
   void write(std::vector<double>& values);              ///< puts 1 on the diagonal of constrained rows
@@ -66,6 +73,7 @@ private:
   std::vector<int> flow_places_, tangent_places_; ///< of visited entries in the pattern, in their order
   std::vector<double> constant_;                  ///< for the current factors, by place in the pattern
   std::vector<double> without_tangents_;          ///< with convection and jumps
+  const SparseMatrix* added_stiffness_ = nullptr;
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_;

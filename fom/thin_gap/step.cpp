@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fom/levels/simulation.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "fom/thin_gap/step_terms.hpp"
 
 namespace undula::fom {

@@ -12,6 +12,7 @@
 
 #include "fom/fom.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "fom/thin_gap/step_energy.hpp"
 #include "fom/thin_gap/step_equations.hpp"
 #include "geometry/wave_pump/pump.hpp"
@@ -212,23 +213,17 @@ State initial_state(const ThinGapModel& model) {
   return state;
 }
 
-void march(const ThinGapModel& model, const Scene& scene, State& state, PhaseTimer& timer,
-           const StepCallback& on_step) {
-  BandMatrix matrix(unknowns(model), ThinGapUnknowns::reach);
-  const int last_step = scene.time.periods * scene.time.steps_per_period;
-  while (state.step < last_step) {
-    StepResult result = solve_step(model.layout, scene, state, matrix, timer);
-    state.d[1] = std::exchange(state.d[0], std::move(result.d));
-    state.x[1] = std::exchange(state.x[0], std::move(result.x));
-    ++state.step;
-    state.time = state.step * time_step(scene);
-    Observation seen;
-    {
-      const auto scope = timer.measure("observe");
-      seen = observe(model.layout, scene, result.step, state, result.holder_force);
-    }
-    on_step(state, seen);
-  }
+ThinGapStepper::ThinGapStepper(const ThinGapModel& model, const Scene& scene, PhaseTimer& timer)
+    : model_(model), scene_(scene), timer_(timer), matrix_(unknowns(model), ThinGapUnknowns::reach) {}
+
+Observation ThinGapStepper::advance(State& state) {
+  StepResult result = solve_step(model_.layout, scene_, state, matrix_, timer_);
+  state.d[1] = std::exchange(state.d[0], std::move(result.d));
+  state.x[1] = std::exchange(state.x[0], std::move(result.x));
+  ++state.step;
+  state.time = state.step * time_step(scene_);
+  const auto scope = timer_.measure("observe");
+  return observe(model_.layout, scene_, result.step, state, result.holder_force);
 }
 
 MembraneProbes membrane_probes(const ThinGapModel& model, int count) {

@@ -2,10 +2,12 @@
 // and the channels that join the gaps to the inlet and the outlet.
 #pragma once
 
-#include "fom/levels/simulation.hpp"
 #include "fom/output/field_writer.hpp"
+#include "fom/output/observables.hpp"
 #include "fom/scene/scene.hpp"
+#include "fom/thin_gap/band_matrix.hpp"
 #include "fom/thin_gap/layout.hpp"
+#include "rom/base/phase_timer.hpp"
 
 namespace undula::fom {
 
@@ -25,11 +27,22 @@ int unknowns(const ThinGapModel& model);
 /// Rest. State::x: pressures, flows and velocities of the plate; State::d: displacements of the plate.
 State initial_state(const ThinGapModel& model);
 
-/// Marches from `state` to the end of the scene's last period, calling `on_step` after every step. The
-/// operating point may differ from that of the scene the model was prepared from. Throws NumericsError,
-/// leaving `state` at the last good step. Phases "assemble", "factor", "solve", "observe".
-void march(const ThinGapModel& model, const Scene& scene, State& state, PhaseTimer& timer,
-           const StepCallback& on_step);
+/// Steps at one operating point, which may differ from that of the scene the model was prepared from. Model
+/// and timer have to outlive it. Phases "assemble", "factor", "solve", "observe".
+class ThinGapStepper {
+public:
+  ThinGapStepper(const ThinGapModel& model, const Scene& scene, PhaseTimer& timer);
+
+  /// One time step, in parts where Newton's method fails at the whole one. Throws NumericsError, leaving
+  /// `state` at the last good step.
+  Observation advance(State& state);
+
+private:
+  const ThinGapModel& model_;
+  Scene scene_;
+  PhaseTimer& timer_;
+  BandMatrix matrix_;
+};
 
 /// Axial displacement of the plate from State::d at `count` radii from the tip to the rim.
 MembraneProbes membrane_probes(const ThinGapModel& model, int count);

@@ -106,6 +106,14 @@ TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<d
       system_(disc, operators, factor_every, timer) {}
 
 template <int dim>
+void TimeStepper<dim>::set_contact(ContactForce contact) {
+  contact_ = std::move(contact);
+  // The film is known to every rank and enters once.
+  if (operators_.rank != 0) contact_->stiffness.setZero();
+  system_.add_stiffness(&contact_->stiffness);
+}
+
+template <int dim>
 Eigen::VectorXd TimeStepper<dim>::loads(double t) const {
   Eigen::VectorXd load = loads_at(disc_, operators_, t);
   if (contact_) load += contact_->load;
@@ -143,6 +151,7 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
     const auto scope = timer_.measure("assemble");
     rhs = operators_.stiffness * (history_d / alpha[0]) -
           operators_.mass * ((alpha[1] * state.x[0] + alpha[2] * state.x[1]) / dt_);
+    if (contact_) rhs += contact_->stiffness * (history_d / alpha[0]);
     sum_over_ranks(operators_.comm, rhs);
     rhs += loads(t);
     impose(state, alpha, t, rhs);
@@ -188,6 +197,7 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
                         operators_.damping * x + operators_.stiffness * state.d[0] +
                         convection_of(disc_, operators_, convecting_, x) +
                         jumps_of(disc_, operators_, convecting_, x);
+  if (contact_) sum += contact_->stiffness * state.d[0];
   sum_over_ranks(operators_.comm, sum);
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
@@ -206,9 +216,10 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   const Eigen::VectorXd reaction = residual(state);
   const Eigen::VectorXd load = loads_at(disc_, operators_, state.time);
 
-  Eigen::VectorXd sums(6);
+  Eigen::VectorXd sums(7);
   sums << x.dot(physical), x.dot(penalties), x.dot(damping), 0.5 * x.dot(operators_.mass * x),
-      0.5 * state.d[0].dot(elastic), carried_power(disc_, operators_, convecting_, x);
+      0.5 * state.d[0].dot(elastic), carried_power(disc_, operators_, convecting_, x),
+      contact_ ? x.dot(contact_->stiffness * state.d[0]) : 0.0;
   sum_over_ranks(operators_.comm, sums);
   EnergyTerms terms;
   terms.viscous = sums[0];
@@ -216,11 +227,7 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   terms.damping = sums[2];
   terms.kinetic = sums[3];
   terms.elastic = sums[4];
-  if (contact_) {
-    const Eigen::VectorXd film = contact_->stiffness * state.d[0];
-    terms.elastic -= 0.5 * state.d[0].dot(film);
-    terms.contact = x.dot(film - contact_->load);
-  }
+  if (contact_) terms.contact = sums[6] - x.dot(contact_->load);
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
     terms.elastic += solids.energy;

@@ -52,9 +52,9 @@ public:
   /// The same to time t, which has to be one dt later; for steps that are parts of a regular one.
   void advance_to(double t, State& state);
 
-  /// Adds the force of contact to the following steps; its stiffness has to be in operators.stiffness too, on
-  /// one rank.
-  void set_contact(ContactForce contact) { contact_ = std::move(contact); }
+  /// The force of contact in the following steps, the same on every rank, in the place of an earlier one. The
+  /// operators stay as they are. Collective.
+  void set_contact(ContactForce contact);
 
   /// Terms of the step that ended in `state` (state.step >= 1).
   EnergyTerms energy(const State& state) const;
@@ -82,10 +82,10 @@ private:
   LinearSystem<dim> system_;
   Eigen::VectorXd loads(double t) const;
 
-  std::optional<ContactForce> contact_;
-  std::array<double, 3> alpha_{};     ///< of the last step
-  Eigen::VectorXd older_x_, older_d_; ///< levels n-1 of the last step, for the energy terms
-  Eigen::VectorXd convecting_;        ///< extrapolated velocity of the last step
+  std::optional<ContactForce> contact_; ///< its stiffness is part of the system's
+  std::array<double, 3> alpha_{};       ///< of the last step
+  Eigen::VectorXd older_x_, older_d_;   ///< levels n-1 of the last step, for the energy terms
+  Eigen::VectorXd convecting_;          ///< extrapolated velocity of the last step
 };
 
 /// How a nonlinear solid is brought to its steady state: body forces, pressures and imposed values rise in

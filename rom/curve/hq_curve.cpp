@@ -23,21 +23,6 @@ bool inside(double value, double low, double high) {
   return value >= low - slack && value <= high + slack;
 }
 
-void check_input(double frequency_Hz, double stroke_mm, std::span<const double> heads_mmHg) {
-  const auto fail = [](const std::string& what, double seen, const std::string& unit,
-                       const std::string& allowed) {
-    std::ostringstream text;
-    text << seen << " " << unit;
-    throw InputError(what, text.str(), allowed, "operating point of the HQ curve");
-  };
-  if (!(frequency_Hz > 0) || !std::isfinite(frequency_Hz))
-    fail("the frequency must be positive", frequency_Hz, "Hz", "> 0");
-  if (!(stroke_mm > 0) || !std::isfinite(stroke_mm))
-    fail("the stroke must be positive", stroke_mm, "mm", "> 0");
-  for (const double head : heads_mmHg)
-    if (!std::isfinite(head)) fail("the head must be a finite number", head, "mmHg", "finite");
-}
-
 void set_envelope(const Operators& operators, const PeriodicSolver& solver, double stroke_cm,
                   const PeriodicState& state, HqPoint& point) {
   Eigen::MatrixXd axial = operators.envelope * solver.at_steps(state.displacement);
@@ -51,6 +36,21 @@ void set_envelope(const Operators& operators, const PeriodicSolver& solver, doub
 }
 
 } // namespace
+
+void check_operating_point(double frequency_Hz, double stroke_mm, std::span<const double> heads_mmHg) {
+  const auto fail = [](const std::string& what, double seen, const std::string& unit,
+                       const std::string& allowed) {
+    std::ostringstream text;
+    text << seen << " " << unit;
+    throw InputError(what, text.str(), allowed, "operating point of the HQ curve");
+  };
+  if (!(frequency_Hz > 0) || !std::isfinite(frequency_Hz))
+    fail("the frequency must be positive", frequency_Hz, "Hz", "> 0");
+  if (!(stroke_mm > 0) || !std::isfinite(stroke_mm))
+    fail("the stroke must be positive", stroke_mm, "mm", "> 0");
+  for (const double head : heads_mmHg)
+    if (!std::isfinite(head)) fail("the head must be a finite number", head, "mmHg", "finite");
+}
 
 std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double stroke_mm,
                                               std::span<const double> heads_mmHg) {
@@ -70,7 +70,7 @@ std::vector<std::string> outside_training_box(const TrainingBox& box, double fre
 
 std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double stroke_mm,
                               std::span<const double> heads_mmHg, const HqOptions& options) {
-  check_input(frequency_Hz, stroke_mm, heads_mmHg);
+  check_operating_point(frequency_Hz, stroke_mm, heads_mmHg);
   const Operators operators = condense_pressure(model.operators);
   const double stroke = units::length_from_mm(stroke_mm);
   PeriodicSolver solver(operators, frequency_Hz, model.steps_per_period, options.periodic);

@@ -39,10 +39,13 @@ struct HqPoint {
 };
 
 /// Periodic states at the given heads (mmHg, any order, repeats allowed); the points come in the order of the
-/// heads. Throws InputError for a frequency or stroke that is not positive, or a head that is not finite. A
-/// point outside the training box is answered with inside_training_box = false: the caller must show it.
+/// heads. Throws InputError as check_operating_point. A point outside the training box is answered with
+/// inside_training_box = false: the caller must show it.
 std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double stroke_mm,
                               std::span<const double> heads_mmHg, const HqOptions& options = {});
+
+/// Throws InputError for a frequency or stroke that is not positive, or a head that is not finite.
+void check_operating_point(double frequency_Hz, double stroke_mm, std::span<const double> heads_mmHg);
 
 /// One line for each parameter that leaves the training box ("frequency 150 Hz is outside the trained 80 to
 /// 140 Hz"). Empty: all inside.

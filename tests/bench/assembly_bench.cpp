@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "fom/levels/simulation.hpp"
+#include "fom/levels/prepared_scene.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_time.hpp"
 
 int main(int argc, char** argv) {
   using namespace undula;

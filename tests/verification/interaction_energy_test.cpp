@@ -4,9 +4,10 @@
 
 #include <cstdio>
 
-#include "fom/levels/simulation.hpp"
+#include "fom/levels/prepared_scene.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "tests/verification/support/names.hpp"
 
 namespace undula::verification {

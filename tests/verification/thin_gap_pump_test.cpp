@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fom/levels/simulation.hpp"
+#include "fom/levels/march.hpp"
+#include "fom/levels/thin_gap_level.hpp"
 #include "fom/output/step_table.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_scene.hpp"
 
@@ -27,7 +29,8 @@ Run run(const Scene& scene, const ThinGapModel& model) {
   result.state = initial_state(model);
   PhaseTimer timer;
   double difference = 0, flow = 0;
-  march(model, scene, result.state, timer, [&](const State& state, const Observation& seen) {
+  ThinGapLevel level(model);
+  march(level, scene, result.state, timer, [&](const State& state, const Observation& seen) {
     result.table.steps.push_back(state.step);
     const auto row = observation_row(seen);
     result.table.values.insert(result.table.values.end(), row.begin(), row.end());

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "fom/levels/simulation.hpp"
+#include "fom/levels/march.hpp"
+#include "fom/levels/thin_gap_level.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_scene.hpp"
 
@@ -59,7 +61,8 @@ FilmRecord film(const Film& film) {
   State state = initial_state(model);
   PhaseTimer timer;
   FilmRecord record;
-  march(model, scene, state, timer, [&](const State& now, const Observation& seen) {
+  ThinGapLevel level(model);
+  march(level, scene, state, timer, [&](const State& now, const Observation& seen) {
     if (now.step <= (periods - 1) * steps) return;
     const double velocity = // what the scheme makes of the holder's motion
         steps * scene.operating_point.frequency *

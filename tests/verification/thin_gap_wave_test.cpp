@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <numbers>
 
-#include "fom/levels/simulation.hpp"
+#include "fom/levels/march.hpp"
+#include "fom/levels/thin_gap_level.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_scene.hpp"
 
@@ -73,7 +75,8 @@ Complex measured_wave_number(const WaveCase& wave) {
   PhaseTimer timer;
   const auto probes = membrane_probes(model, cells + 1);
   Eigen::VectorXcd amplitude = Eigen::VectorXcd::Zero(cells + 1);
-  march(model, scene, state, timer, [&](const State& now, const Observation&) {
+  ThinGapLevel level(model);
+  march(level, scene, state, timer, [&](const State& now, const Observation&) {
     if (now.step <= (periods - 1) * steps) return;
     amplitude += Eigen::VectorXd(probes.axial * now.d[0]).cast<Complex>() *
                  std::exp(Complex(0, -wave.omega * now.time)) * (2.0 / steps);

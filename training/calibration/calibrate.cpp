@@ -93,12 +93,12 @@ FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
     try {
       const Scene changed = with_values(scene, keys, values);
       PhaseTimer timer;
-      PreparedLevel level = prepare_level(changed, comm, timer);
+      const auto level = prepare_level(changed, comm, timer);
       std::vector<double> all;
       for (const TargetCurve& target : targets) {
         const Scene driven = with_value(with_value(changed, stated_by_data[0], target.frequency_Hz),
                                         stated_by_data[1], target.stroke_mm);
-        const SceneFlows flows = scene_flows(level, driven, target.head_mmHg, comm);
+        const SceneFlows flows = scene_flows(*level, driven, target.head_mmHg, comm);
         all.insert(all.end(), flows.flow_l_per_min.begin(), flows.flow_l_per_min.end());
         // The numbers decide, as they are the same on every rank.
         if (std::ranges::all_of(flows.flow_l_per_min, [](double flow) { return std::isfinite(flow); }))

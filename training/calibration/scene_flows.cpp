@@ -5,14 +5,12 @@
 #include <optional>
 
 #include "rom/base/error.hpp"
-#include "training/campaign/curve.hpp"
 
 namespace undula::training {
 
-SceneFlows scene_flows(PreparedLevel& level, const Scene& scene, std::span<const double> heads_mmHg,
-                       MPI_Comm comm) {
+SceneFlows scene_flows(Level& level, const Scene& scene, std::span<const double> heads_mmHg, MPI_Comm comm) {
   SceneFlows flows;
-  for (const CurvePoint& point : head_flow_curve(level, scene, heads_mmHg)) {
+  for (const CurvePoint& point : level.curve(scene, heads_mmHg)) {
     flows.flow_l_per_min.push_back(point.flow_l_per_min);
     if (!std::isfinite(point.flow_l_per_min) && flows.failure.empty()) flows.failure = point.reason;
     if (std::isfinite(point.flow_l_per_min) && !point.periodic) ++flows.not_periodic;
@@ -26,8 +24,8 @@ SceneFlows scene_flows(const Scene& scene, std::span<const double> heads_mmHg, M
   std::string reason;
   try {
     PhaseTimer timer;
-    PreparedLevel level = prepare_level(scene, comm, timer);
-    return scene_flows(level, scene, heads_mmHg, comm);
+    const auto level = prepare_level(scene, comm, timer);
+    return scene_flows(*level, scene, heads_mmHg, comm);
   } catch (const InputError& error) {
     reason = error.what();
   } catch (const NumericsError& error) {

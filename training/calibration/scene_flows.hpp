@@ -18,9 +18,8 @@ struct SceneFlows {
   int not_periodic = 0;               ///< heads whose flow is a mean over periods that differ
 };
 
-/// Flows at `heads_mmHg` (head_flow_curve), the same on every rank of `comm`, bit for bit. Collective.
-SceneFlows scene_flows(PreparedLevel& level, const Scene& scene, std::span<const double> heads_mmHg,
-                       MPI_Comm comm);
+/// Flows at `heads_mmHg` (Level::curve), the same on every rank of `comm`, bit for bit. Collective.
+SceneFlows scene_flows(Level& level, const Scene& scene, std::span<const double> heads_mmHg, MPI_Comm comm);
 
 /// The same with its own preparation. What cannot be prepared (InputError: a geometry that its values make
 /// impossible; NumericsError) has no flow at any head.

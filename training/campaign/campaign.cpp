@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "fom/levels/simulation.hpp"
-#include "training/campaign/periodic_run.hpp"
+#include "fom/levels/finite_element_level.hpp"
+#include "training/campaign/recorded_run.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
@@ -33,17 +33,17 @@ void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, cons
   int rank = 0;
   MPI_Comm_rank(group, &rank);
 
-  std::unique_ptr<PreparedScene>
-      prepared; // made when the first point is claimed: a finished plan costs nothing
+  std::unique_ptr<FiniteElementLevel>
+      level; // made when the first point is claimed: a finished plan costs nothing
   PhaseTimer timer;
   for (;;) {
     auto next = rank == 0 ? claim_next(plan, store) : NextPoint{};
     MPI_Bcast(&next.index, 1, MPI_INT, 0, group);
     if (next.index < 0) break;
-    if (!prepared) prepared = prepare_scene(scene, group, timer);
+    if (!level) level = std::make_unique<FiniteElementLevel>(scene, group, timer);
     Scene at_point = scene;
     at_point.operating_point = plan[static_cast<std::size_t>(next.index)];
-    const auto record = periodic_run(*prepared, at_point);
+    const auto record = record_run(*level, at_point);
     if (rank == 0) {
       store.store(*next.claim, record);
       if (progress) progress(record, plan.size() - store.status(plan).pending.size(), plan.size());

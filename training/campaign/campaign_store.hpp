@@ -9,18 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "fom/levels/periodic_run.hpp"
 #include "fom/output/scene_stamp.hpp"
 #include "fom/output/time_series.hpp"
 #include "fom/scene/scene.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
-
-enum class RunState {
-  periodic,     ///< the sampled periods repeat within the tolerance
-  not_periodic, ///< ran to its end, does not repeat
-  failed,       ///< stopped by a NumericsError
-};
 
 struct Snapshots {
   std::string unit;

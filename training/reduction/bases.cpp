@@ -6,7 +6,7 @@
 
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "rom/base/error.hpp"
-#include "training/campaign/periodic_run.hpp"
+#include "training/campaign/recorded_run.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "fom/levels/simulation.hpp"
+#include "fom/levels/prepared_scene.hpp"
 #include "training/campaign/campaign_store.hpp"
 #include "training/reduction/pod.hpp"
 #include "training/training.hpp"

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "fom/output/last_periods.hpp"
 #include "rom/base/units.hpp"
 #include "rom/curve/error_estimate.hpp"
 #include "rom/fixed_domain/condense.hpp"
 #include "rom/fixed_domain/periodic.hpp"
-#include "training/campaign/periodic_run.hpp"
-#include "training/campaign/run_summary.hpp"
+#include "training/campaign/recorded_run.hpp"
 
 namespace undula::training {
 

@@ -4,7 +4,8 @@
 #include <numbers>
 
 #include "fom/fom.hpp"
-#include "fom/levels/scene_problem.hpp"
+#include "fom/scene/common_problem.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "geometry/mesh/gmsh_import.hpp"
 #include "geometry/wave_pump/profile_scale.hpp"
 #include "geometry/wave_pump/pump.hpp"

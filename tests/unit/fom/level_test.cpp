@@ -1,10 +1,9 @@
 // What a level shows of itself. Finite elements on the coarsest mesh of the pump.
-#include "fom/levels/level.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
+#include "fom/levels/finite_element_level.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "rom/base/error.hpp"
 
@@ -19,9 +18,9 @@ Scene coarse_scene() {
 
 TEST(FluidPicture, FillsTheFluidAndKeepsLinearFields) {
   PhaseTimer timer;
-  const PreparedLevel level = prepare_level(coarse_scene(), MPI_COMM_SELF, timer);
-  const auto& disc = std::get<std::unique_ptr<PreparedScene>>(level)->disc;
-  const LevelView view = view_level(level, coarse_scene());
+  const FiniteElementLevel level(coarse_scene(), MPI_COMM_SELF, timer);
+  const auto& disc = level.prepared().disc;
+  const LevelView view = level.view(coarse_scene());
   const auto& mesh = view.fluid;
   double fluid = 0, drawn = 0;
   int cut_parts = 0;
@@ -37,7 +36,7 @@ TEST(FluidPicture, FillsTheFluidAndKeepsLinearFields) {
   }
   EXPECT_NEAR(drawn, fluid, 1e-12 * fluid);
 
-  State state = initial_state(level);
+  State state = level.initial_state();
   const auto linear = [](const Point<2>& x) { return Eigen::Vector3d(2 * x[0] - x[1], x[1] + 1, 3 - x[0]); };
   for (std::size_t node = 0; node < disc.fluid_nodes.dof_point.size(); ++node)
     state.x[0].segment<3>(disc.velocity_unknown(static_cast<int>(node), 0)) =

@@ -1,12 +1,12 @@
 // From a scene to a run: the coarsest mesh of the pump, a few steps.
-#include "fom/levels/simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "fom/levels/march.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_time.hpp"
 
 namespace undula::fom {
 namespace {
@@ -34,13 +34,13 @@ TEST(SmoothRamp, RisesFromZeroToOneWithoutKinks) {
 TEST(Simulation, MovesTheHolderAsTheSceneSaysAndKeepsTheVolume) {
   auto scene = coarse_scene("5.0");
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, PETSC_COMM_SELF, timer);
+  const auto level = prepare_level(scene, MPI_COMM_SELF, timer);
   EXPECT_DOUBLE_EQ(time_step(scene), 1 / (120.0 * 96));
-  State state = initial_state(prepared->disc);
+  State state = level->initial_state();
   state.step = 84; // the run ends at the end of the scene's last period
   state.time = 84 * time_step(scene);
   int steps = 0;
-  march(*prepared, scene, state, timer, [&](const State& now, const Observation& seen) {
+  march(*level, scene, state, timer, [&](const State& now, const Observation& seen) {
     ++steps;
     EXPECT_EQ(seen.step, 84 + steps);
     EXPECT_EQ(now.step, seen.step);
@@ -57,10 +57,9 @@ TEST(Simulation, MovesTheHolderAsTheSceneSaysAndKeepsTheVolume) {
   // Another operating point on the same meshes.
   scene.operating_point.stroke = 0.02;
   scene.operating_point.head = 0;
-  set_operating_point(*prepared, scene);
-  State other = initial_state(prepared->disc);
+  State other = level->initial_state();
   other.step = 94;
-  march(*prepared, scene, other, timer, [&](const State& now, const Observation& seen) {
+  march(*level, scene, other, timer, [&](const State& now, const Observation& seen) {
     EXPECT_NEAR(seen.holder_displacement, holder_displacement(scene, now.time), 1e-12);
     EXPECT_EQ(seen.hydraulic_power, 0);
   });
@@ -69,11 +68,11 @@ TEST(Simulation, MovesTheHolderAsTheSceneSaysAndKeepsTheVolume) {
 TEST(Simulation, LetsTheMembraneBend) {
   auto scene = coarse_scene("0.0");
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, PETSC_COMM_SELF, timer);
-  State state = initial_state(prepared->disc);
+  const auto level = prepare_level(scene, MPI_COMM_SELF, timer);
+  State state = level->initial_state();
   state.step = 84;
   Observation last;
-  march(*prepared, scene, state, timer, [&](const State&, const Observation& seen) { last = seen; });
+  march(*level, scene, state, timer, [&](const State&, const Observation& seen) { last = seen; });
   EXPECT_NEAR(last.holder_displacement, 0, 1e-12); // a whole period
   EXPECT_GT(std::abs(last.tip_displacement), 1e-3);
   EXPECT_GT(last.clearance_min, 0);

@@ -8,6 +8,7 @@
 #include "fom/scene/expression.hpp"
 #include "fom/scene/general_problem.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"

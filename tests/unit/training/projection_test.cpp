@@ -5,10 +5,11 @@
 #include <random>
 
 #include "coarse_pump.hpp"
+#include "fom/levels/extrapolation.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "rom/base/units.hpp"
 #include "rom/fixed_domain/periodic.hpp"
-#include "training/campaign/periodic_run.hpp"
+#include "training/campaign/recorded_run.hpp"
 #include "training/reduction/judge.hpp"
 #include "training/training.hpp"
 
@@ -84,14 +85,15 @@ TEST(Projection, ModelOfOneRunReproducesIt) {
   auto scene = coarse_pump({"operating_point.stroke_mm=0.3", "operating_point.head_mmHg=10",
                             "time.periods=30", "training.periodic_tolerance=1e-5"});
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, MPI_COMM_SELF, timer);
-  const std::vector<RunRecord> runs = {periodic_run(*prepared, scene)};
+  FiniteElementLevel level(scene, MPI_COMM_SELF, timer);
+  const std::vector<RunRecord> runs = {record_run(level, scene)};
+  const PreparedScene& prepared = level.prepared();
   ASSERT_EQ(runs[0].state, RunState::periodic) << runs[0].reason;
   // Time levels between snapshots are in the basis too: every step is a snapshot.
   scene.training.energy_tolerance = 1e-12;
-  const auto bases = build_bases(*prepared, scene, runs);
-  const auto reduced = project(*prepared, bases);
-  const auto run = project_run(*prepared, scene, bases, runs[0], true);
+  const auto bases = build_bases(prepared, scene, runs);
+  const auto reduced = project(prepared, bases);
+  const auto run = project_run(prepared, scene, bases, runs[0], true);
   const auto errors =
       judge_run(reduced, reduced.velocity_modes - reduced.supremizer_modes, reduced.pressure_modes,
                 reduced.displacement_modes, scene.time.steps_per_period, run);
@@ -126,19 +128,20 @@ TEST(PeriodicRun, ExtrapolatedStateIsTheLimitOfTheMarch) {
                                           "fluid.viscosity_poise=0.35"};
   const auto scene = coarse_pump(point);
   PhaseTimer timer;
-  const auto prepared = prepare_scene(scene, MPI_COMM_SELF, timer);
-  const auto record = periodic_run(*prepared, scene);
+  FiniteElementLevel level(scene, MPI_COMM_SELF, timer);
+  State settled = level.initial_state();
+  const auto record = march_until_periodic(level, scene, settled);
   ASSERT_EQ(record.state, RunState::periodic) << record.reason;
   const std::size_t periods = record.cycles.periods.size();
   EXPECT_LT(periods, 25u);
   const double flow = record.cycles.mean[(periods - 1) * record.cycles.columns.size()];
 
   // The plain march creeps towards it, from one side: a value that has merely stopped early would be passed.
-  State state = initial_state(prepared->disc);
+  State state = level.initial_state();
   auto longer = scene;
   longer.time.periods = 32;
   std::vector<double> means(33, 0.0);
-  march(*prepared, longer, state, timer, [&](const State& now, const Observation& seen) {
+  march(level, longer, state, timer, [&](const State& now, const Observation& seen) {
     const int period = (now.step + scene.time.steps_per_period - 1) / scene.time.steps_per_period;
     means[static_cast<std::size_t>(period)] +=
         units::flow_to_l_per_min(seen.outflow) / scene.time.steps_per_period;

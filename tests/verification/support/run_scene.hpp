@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fom/levels/level.hpp"
+#include "fom/levels/march.hpp"
 #include "fom/output/series_statistics.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "tests/verification/support/names.hpp"
@@ -36,12 +36,12 @@ inline SceneRun run_scene(const std::string& name, const std::vector<std::string
   SceneRun run;
   run.scene = read_scene(UNDULA_SOURCE_DIR "/data/scenes/" + name + ".toml", settings);
   PhaseTimer timer;
-  PreparedLevel level = prepare_level(run.scene, MPI_COMM_SELF, timer);
-  run.unknowns = unknowns(level);
-  const RowLayout rows = view_level(level, run.scene).rows;
+  const auto level = prepare_level(run.scene, MPI_COMM_SELF, timer);
+  run.unknowns = level->unknowns();
+  const RowLayout rows = level->view(run.scene).rows;
   run.table.columns = observation_columns(rows);
-  State state = initial_state(level);
-  march(level, run.scene, state, timer, [&](const State& now, const Observation& seen) {
+  State state = level->initial_state();
+  march(*level, run.scene, state, timer, [&](const State& now, const Observation& seen) {
     run.table.steps.push_back(now.step);
     const auto row = observation_row(seen, rows);
     run.table.values.insert(run.table.values.end(), row.begin(), row.end());

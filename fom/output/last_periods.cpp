@@ -1,8 +1,8 @@
-#include "training/campaign/run_summary.hpp"
+#include "fom/output/last_periods.hpp"
 
 #include <algorithm>
 
-namespace undula::training {
+namespace undula::fom {
 
 LastPeriods last_periods(const CycleMeans& cycles, const std::string& column) {
   constexpr std::size_t looked_at = 3;
@@ -20,4 +20,4 @@ LastPeriods last_periods(const CycleMeans& cycles, const std::string& column) {
   return last;
 }
 
-} // namespace undula::training
+} // namespace undula::fom

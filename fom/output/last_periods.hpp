@@ -4,9 +4,8 @@
 #include <string>
 
 #include "fom/output/time_series.hpp"
-#include "training/training.hpp"
 
-namespace undula::training {
+namespace undula::fom {
 
 /// In the unit of the column.
 struct LastPeriods {
@@ -17,4 +16,4 @@ struct LastPeriods {
 /// `cycles` holds at least one period and the column.
 LastPeriods last_periods(const CycleMeans& cycles, const std::string& column);
 
-} // namespace undula::training
+} // namespace undula::fom

@@ -1,20 +1,16 @@
 // What a run comes to as a point of a curve.
-#include "training/campaign/curve.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "rom/base/units.hpp"
-#include "training/training.hpp"
+#include "fom/levels/marched_curve.hpp"
 
-namespace undula::training {
+namespace undula::fom {
 namespace {
 
 /// Four periods with outflows 4, 1, 2, 3 l/min.
-RunRecord four_periods(RunState state) {
-  RunRecord record;
-  record.point.head = units::pressure_from_mmHg(40);
+PeriodicRun four_periods(RunState state) {
+  PeriodicRun record;
   record.state = state;
   record.seconds["total"] = 1;
   record.cycles.columns = {"outflow_l_per_min", "inflow_l_per_min", "hydraulic_power_mW",
@@ -32,7 +28,7 @@ RunRecord four_periods(RunState state) {
 }
 
 TEST(CurvePoint, OfAPeriodicRunIsItsLastPeriod) {
-  const CurvePoint point = curve_point(four_periods(RunState::periodic), 3);
+  const CurvePoint point = curve_point(four_periods(RunState::periodic), 40);
   EXPECT_NEAR(point.head_mmHg, 40, 1e-12);
   EXPECT_EQ(point.flow_l_per_min, 3);
   EXPECT_EQ(point.inflow_l_per_min, 13);
@@ -45,23 +41,22 @@ TEST(CurvePoint, OfAPeriodicRunIsItsLastPeriod) {
 }
 
 TEST(CurvePoint, OfARunThatDoesNotRepeatIsTheMeanOfTheLastPeriods) {
-  const CurvePoint point = curve_point(four_periods(RunState::not_periodic), 3);
+  const CurvePoint point = curve_point(four_periods(RunState::not_periodic), 40);
   EXPECT_EQ(point.flow_l_per_min, 2);
   EXPECT_EQ(point.inflow_l_per_min, 12);
   EXPECT_EQ(point.speed_max_cm_per_s, 105);
   EXPECT_EQ(point.clearance_min_mm, 4);
   EXPECT_FALSE(point.periodic);
-  EXPECT_EQ(curve_point(four_periods(RunState::not_periodic)).flow_l_per_min, 3);
 }
 
 TEST(CurvePoint, OfAFailedRunHasNoFlow) {
-  RunRecord record = four_periods(RunState::failed);
+  PeriodicRun record = four_periods(RunState::failed);
   record.reason = "diverged";
-  const CurvePoint point = curve_point(record, 3);
+  const CurvePoint point = curve_point(record, 40);
   EXPECT_TRUE(std::isnan(point.flow_l_per_min));
   EXPECT_TRUE(std::isnan(point.spread_l_per_min));
   EXPECT_EQ(point.reason, "diverged");
 }
 
 } // namespace
-} // namespace undula::training
+} // namespace undula::fom

@@ -32,6 +32,9 @@ struct LevelView {
 /// The field with this name. Throws InputError naming the fields there are.
 const NodalField& field_named(const std::vector<NodalField>& fields, const std::string& name);
 
+/// Lowest and highest corner of the box around points.
+std::array<Point<2>, 2> box_around(const std::vector<Point<2>>& points);
+
 /// Pairs of points that are an edge of one triangle only: the boundary of a picture.
 std::vector<std::array<int, 2>> boundary_edges(const FieldMesh<2>& mesh);
 

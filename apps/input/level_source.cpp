@@ -1,0 +1,65 @@
+#include "apps/input/level_source.hpp"
+
+#include <CLI/Error.hpp>
+#include <filesystem>
+#include <utility>
+
+#include "fom/levels/reduced_level.hpp"
+#include "fom/scene/common_problem.hpp"
+#include "fom/scene/scene_file.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
+
+namespace undula::apps {
+namespace {
+
+LevelSource read_model_source(const std::string& file, const std::vector<std::string>& overrides,
+                              const std::optional<double>& frequency_Hz,
+                              const std::optional<double>& stroke_mm) {
+  if (!overrides.empty()) {
+    throw InputError("a reduced model has no keys to override", "--set " + overrides.front(),
+                     "--set with a scene (.toml)", file);
+  }
+  if (!frequency_Hz || !stroke_mm) {
+    throw CLI::RequiredError(frequency_Hz ? "--stroke" : "--frequency");
+  }
+  rom::check_operating_point(*frequency_Hz, *stroke_mm, {});
+  LevelSource source;
+  source.file = file;
+  source.model = rom::load_model(file);
+  source.scene =
+      scene_of_model(*source.model, std::filesystem::path(file).stem().string(), *frequency_Hz, *stroke_mm);
+  return source;
+}
+
+} // namespace
+
+bool is_scene(const std::string& file) { return std::filesystem::path(file).extension() == ".toml"; }
+
+LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
+                              const std::optional<double>& frequency_Hz,
+                              const std::optional<double>& stroke_mm) {
+  if (!is_scene(file)) {
+    return read_model_source(file, overrides, frequency_Hz, stroke_mm);
+  }
+  if (frequency_Hz) {
+    overrides.push_back("operating_point.frequency_Hz=" + exact_number(*frequency_Hz));
+  }
+  if (stroke_mm) {
+    overrides.push_back("operating_point.stroke_mm=" + exact_number(*stroke_mm));
+  }
+  LevelSource source;
+  source.file = file;
+  source.scene = read_scene(file, overrides);
+  require_pump(source.scene, "a head-flow curve");
+  return source;
+}
+
+std::unique_ptr<Level> prepare(const LevelSource& source, MPI_Comm comm, PhaseTimer& timer) {
+  if (source.model) {
+    return std::make_unique<ReducedLevel>(*source.model);
+  }
+  return prepare_level(source.scene, comm, timer);
+}
+
+} // namespace undula::apps

@@ -1,0 +1,37 @@
+// What a command is asked about: a scene (.toml) or a reduced model (.h5), behind one door.
+#pragma once
+
+#include <mpi.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/apps.hpp"
+#include "fom/levels/level.hpp"
+#include "rom/fixed_domain/model.hpp"
+
+namespace undula::apps {
+
+/// A file and what is stated beside it on the command line.
+struct LevelSource {
+  std::string file;
+  Scene scene;                     ///< of a reduced model: scene_of_model
+  std::optional<rom::Model> model; ///< nothing for a scene
+};
+
+/// Whether a file is read as a scene.
+bool is_scene(const std::string& file);
+
+/// Reads a scene of a pump with `--set` overrides, then `--frequency` and `--stroke` where they are given; or
+/// a reduced model, which needs frequency and stroke and has no keys to override. Throws InputError (or
+/// CLI::RequiredError for a missing frequency or stroke) for anything else.
+LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
+                              const std::optional<double>& frequency_Hz,
+                              const std::optional<double>& stroke_mm);
+
+/// The level of a source. Phases as prepare_level. Collective over `comm`.
+std::unique_ptr<Level> prepare(const LevelSource& source, MPI_Comm comm, PhaseTimer& timer);
+
+} // namespace undula::apps

@@ -1,0 +1,277 @@
+#include "apps/output/curve_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "apps/output/plots.hpp"
+#include "apps/output/text_table.hpp"
+#include "rom/base/units.hpp"
+
+namespace undula::apps {
+namespace {
+
+double stroke_mm(const Scene& scene) { return units::length_to_mm(scene.operating_point.stroke); }
+
+std::string number_or(double value, int count, const char* otherwise) {
+  return std::isfinite(value) ? decimals(value, count) : otherwise;
+}
+
+/// A column of numbers that some levels know.
+struct Column {
+  const char* title;
+  double CurvePoint::*value;
+  int decimals;
+  const char* otherwise;
+};
+constexpr Column columns[] = {{"error (l/min)", &CurvePoint::error_l_per_min, 3, "unknown"},
+                              {"inflow (l/min)", &CurvePoint::inflow_l_per_min, 4, "failed"},
+                              {"spread (l/min)", &CurvePoint::spread_l_per_min, 4, "failed"},
+                              {"max speed (cm/s)", &CurvePoint::speed_max_cm_per_s, 1, "failed"},
+                              {"min clearance (mm)", &CurvePoint::clearance_min_mm, 3, "failed"}};
+
+/// Whether any point knows it; an infinite error is known to be unknown.
+bool is_known(const Column& column, std::span<const CurvePoint> points) {
+  return std::ranges::any_of(points,
+                             [&](const CurvePoint& point) { return !std::isnan(point.*column.value); });
+}
+
+bool has_training_box(std::span<const CurvePoint> points) {
+  return std::ranges::any_of(points, [](const auto& point) { return point.inside_training_box.has_value(); });
+}
+
+double total_seconds(const CurvePoint& point) {
+  const auto found = point.seconds.find("total");
+  return found == point.seconds.end() ? CurvePoint::unknown : found->second;
+}
+
+/// Places of the points with a flow, from the lowest head to the highest.
+std::vector<std::size_t> upwards(std::span<const CurvePoint> points) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::isfinite(points[i].flow_l_per_min)) {
+      order.push_back(i);
+    }
+  }
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return points[i].head_mmHg; });
+  return order;
+}
+
+} // namespace
+
+std::optional<double> measured_flow(const MeasuredCurve& curve, double head_mmHg) {
+  if (head_mmHg < curve.head_mmHg.front() || head_mmHg > curve.head_mmHg.back()) {
+    return std::nullopt;
+  }
+  return curve.fit(head_mmHg);
+}
+
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+std::string curve_table(const CurveReport& report) {
+  std::vector<std::string> header = {"head (mmHg)", "flow (l/min)"};
+  std::vector<Column> shown;
+  std::ranges::copy_if(columns, std::back_inserter(shown),
+                       [&](const Column& column) { return is_known(column, report.points); });
+  for (const Column& column : shown) {
+    header.emplace_back(column.title);
+  }
+  const bool boxed = has_training_box(report.points);
+  if (boxed) {
+    header.emplace_back("in training box");
+  }
+  header.insert(header.end(), {"periods", "periodic", "seconds"});
+  if (report.measured != nullptr) {
+    header.emplace_back("measured, fit (l/min)");
+  }
+  if (report.band != nullptr) {
+    header.emplace_back("by tolerances (l/min)");
+  }
+  if (!report.beside.empty()) {
+    header.emplace_back(report.beside_level + " (l/min)");
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < report.points.size(); ++i) {
+    const CurvePoint& point = report.points[i];
+    std::vector<std::string> row = {decimals(point.head_mmHg, 2),
+                                    number_or(point.flow_l_per_min, 4, "failed")};
+    for (const Column& column : shown) {
+      row.push_back(number_or(point.*column.value, column.decimals, column.otherwise));
+    }
+    if (boxed) {
+      row.emplace_back(point.inside_training_box.value_or(false) ? "yes" : "no");
+    }
+    row.insert(row.end(), {point.periods == 0 ? "-" : std::to_string(point.periods),
+                           point.periodic ? "yes" : "no", number_or(total_seconds(point), 3, "-")});
+    if (report.measured != nullptr) {
+      const auto flow = measured_flow(*report.measured, point.head_mmHg);
+      row.push_back(flow ? decimals(*flow, 3) : "-");
+    }
+    if (report.band != nullptr) {
+      const double width = report.band->half_width[i];
+      row.push_back(std::isfinite(width) ? "-+" + decimals(width, 3) : "unknown");
+    }
+    if (!report.beside.empty()) {
+      row.push_back(number_or(report.beside[i].flow_l_per_min, 4, "failed"));
+    }
+    rows.push_back(std::move(row));
+  }
+  return text_table(header, rows);
+}
+
+std::string sensitivity_table(const CurveReport& report) {
+  // 1. The lowest, middle and highest head.
+  std::vector<std::size_t> upwards(report.points.size());
+  std::iota(upwards.begin(), upwards.end(), std::size_t{0});
+  std::ranges::stable_sort(upwards, {}, [&](std::size_t i) { return report.points[i].head_mmHg; });
+  std::vector<std::size_t> shown = {upwards.front(), upwards[upwards.size() / 2], upwards.back()};
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+
+  // 2. One row per input: change of the flow at value + tolerance / value - tolerance.
+  std::vector<std::string> header = {"input", "value", "tolerance"};
+  for (const std::size_t i : shown) {
+    header.push_back("+/- at " + shortest(report.points[i].head_mmHg) + " mmHg (l/min)");
+  }
+  const auto signed_number = [](double value) {
+    return std::isfinite(value) ? (value >= 0 ? "+" : "") + decimals(value, 3) : std::string("unknown");
+  };
+  std::vector<std::vector<std::string>> rows;
+  std::string notes;
+  for (const InputEffect& input : report.band->inputs) {
+    rows.push_back({input.key, shortest(input.value), shortest(input.tolerance)});
+    for (const std::size_t i : shown) {
+      rows.back().push_back(signed_number(input.up[i]) + " / " + signed_number(input.down[i]));
+    }
+    if (!input.note.empty()) {
+      notes += input.key + ": one side alone where the other is unknown (" + input.note + ")\n";
+    }
+  }
+  return text_table(header, rows) + notes;
+}
+
+namespace {
+
+nlohmann::ordered_json point_json(const CurvePoint& point) {
+  nlohmann::ordered_json entry = {{"head_mmHg", point.head_mmHg},
+                                  {"flow_l_per_min", finite_or_null(point.flow_l_per_min)},
+                                  {"error_l_per_min", finite_or_null(point.error_l_per_min)}};
+  if (point.inside_training_box) {
+    entry["inside_training_box"] = *point.inside_training_box;
+  }
+  entry["inflow_l_per_min"] = finite_or_null(point.inflow_l_per_min);
+  entry["spread_l_per_min"] = finite_or_null(point.spread_l_per_min);
+  entry["hydraulic_power_mW"] = finite_or_null(point.power_mW);
+  entry["holder_power_mW"] = finite_or_null(point.holder_power_mW);
+  entry["speed_max_cm_per_s"] = finite_or_null(point.speed_max_cm_per_s);
+  entry["clearance_min_mm"] = finite_or_null(point.clearance_min_mm);
+  entry["periods"] = point.periods;
+  entry["periodic"] = point.periodic;
+  entry["reason"] = point.reason;
+  entry["seconds"] = point.seconds;
+  return entry;
+}
+
+nlohmann::ordered_json tolerances_json(const UncertaintyBand& band) {
+  const auto list = [](std::span<const double> values) {
+    auto numbers = nlohmann::ordered_json::array();
+    for (const double value : values) {
+      numbers.push_back(finite_or_null(value));
+    }
+    return numbers;
+  };
+  auto tolerances = nlohmann::ordered_json::array();
+  for (const InputEffect& input : band.inputs) {
+    tolerances.push_back({{"key", input.key},
+                          {"value", input.value},
+                          {"tolerance", input.tolerance},
+                          {"plus_l_per_min", list(input.up)},
+                          {"minus_l_per_min", list(input.down)},
+                          {"note", input.note}});
+  }
+  return tolerances;
+}
+
+} // namespace
+
+std::string curve_json(const CurveReport& report) {
+  const Scene& scene = report.scene;
+  nlohmann::ordered_json result = {{"scene", scene.name}, {"level", report.level}};
+  if (!report.model_file.empty()) {
+    result = {{"model", report.model_file}, {"level", report.level}};
+  }
+  result["unknowns"] = report.unknowns;
+  result["frequency_Hz"] = scene.operating_point.frequency;
+  result["stroke_mm"] = stroke_mm(scene);
+  result["seconds"] = report.seconds;
+  result["preparation_seconds"] = nlohmann::ordered_json::object();
+  for (const auto& [phase, record] : report.preparation.records()) {
+    result["preparation_seconds"][phase] = record.seconds;
+  }
+  result["points"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < report.points.size(); ++i) {
+    const CurvePoint& point = report.points[i];
+    nlohmann::ordered_json entry = point_json(point);
+    if (report.measured != nullptr) {
+      const auto flow = measured_flow(*report.measured, point.head_mmHg);
+      entry["measured_l_per_min"] = flow ? nlohmann::ordered_json(*flow) : nlohmann::ordered_json(nullptr);
+    }
+    if (report.band != nullptr) {
+      entry["error_l_per_min"] = finite_or_null(report.band->half_width[i]);
+      entry["error_low_l_per_min"] = finite_or_null(report.band->low[i]);
+      entry["error_high_l_per_min"] = finite_or_null(report.band->high[i]);
+    }
+    if (!report.beside.empty()) {
+      entry["beside"] = point_json(report.beside[i]);
+      entry["beside"]["level"] = report.beside_level;
+    }
+    result["points"].push_back(std::move(entry));
+  }
+  if (report.band != nullptr) {
+    result["tolerances"] = tolerances_json(*report.band);
+  }
+  return result.dump(2) + "\n";
+}
+
+bool plot_curve_report(const std::filesystem::path& picture, const CurveReport& report) {
+  const auto finite_or_zero = [](double value) { return std::isfinite(value) ? value : 0.0; };
+  std::vector<double> head, flow, error;
+  for (const std::size_t i : upwards(report.points)) {
+    const CurvePoint& point = report.points[i];
+    head.push_back(point.head_mmHg);
+    flow.push_back(point.flow_l_per_min);
+    if (report.band != nullptr) {
+      error.push_back(finite_or_zero(report.band->half_width[i]));
+    } else if (!std::isnan(point.error_l_per_min)) {
+      error.push_back(finite_or_zero(point.error_l_per_min));
+    }
+  }
+  if (error.size() != flow.size()) {
+    error.clear();
+  }
+  std::vector<double> beside_head, beside_flow;
+  for (const std::size_t i : upwards(report.beside)) {
+    beside_head.push_back(report.beside[i].head_mmHg);
+    beside_flow.push_back(report.beside[i].flow_l_per_min);
+  }
+  std::vector<HqPoints> point_sets;
+  if (!beside_flow.empty()) {
+    point_sets.push_back({report.beside_level, beside_head, beside_flow, true});
+  }
+  for (const RecordedCurve& runs : report.recorded) {
+    if (same_setting(runs.frequency_Hz, report.scene.operating_point.frequency) &&
+        same_setting(runs.stroke_mm, stroke_mm(report.scene))) {
+      point_sets.push_back({"recorded runs", runs.head_mmHg, runs.flow_l_per_min});
+    }
+  }
+  if (report.measured != nullptr) {
+    point_sets.push_back({"measured", report.measured->head_mmHg, report.measured->flow_l_per_min});
+  }
+  const std::string title = report.scene.name + ": " + shortest(report.scene.operating_point.frequency) +
+                            " Hz, stroke " + shortest(stroke_mm(report.scene)) + " mm";
+  const char* band = report.band != nullptr ? "by tolerances of the inputs (95 %)" : "error estimate";
+  return plot_hq_curve(picture, title, {report.level, head, flow, error, band}, point_sets);
+}
+
+} // namespace undula::apps

@@ -1,0 +1,134 @@
+#include "fom/levels/finite_element_level.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "fom/coupling/moving_stepper.hpp"
+#include "fom/output/visual_mesh.hpp"
+#include "fom/scene/scene_time.hpp"
+
+namespace undula::fom {
+namespace {
+
+/// What is seen at the end of a step; phase "observe".
+Observation seen_at(const PreparedScene& prepared, const TimeStepper<2>& stepper, const MotionReport& motion,
+                    const State& state, PhaseTimer& timer) {
+  const auto scope = timer.measure("observe");
+  Observation seen = observe(prepared.disc, prepared.operators, stepper, prepared.observation, state);
+  seen.motion = motion;
+  return seen;
+}
+
+/// The domain of the fluid is that of rest.
+class MarchAtRest final : public Marcher {
+public:
+  MarchAtRest(const PreparedScene& prepared, const Scene& scene, PhaseTimer& timer)
+      : prepared_(prepared),
+        timer_(timer),
+        stepper_(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
+                 scene.time.factor_every, timer, scene.time.newton) {}
+
+  Observation advance(State& state) override {
+    stepper_.advance(state);
+    return seen_at(prepared_, stepper_, {}, state, timer_);
+  }
+
+private:
+  const PreparedScene& prepared_;
+  PhaseTimer& timer_;
+  TimeStepper<2> stepper_;
+};
+
+/// The domain of the fluid follows the solids.
+class MovingMarch final : public Marcher {
+public:
+  MovingMarch(PreparedScene& prepared, const Scene& scene, const State& state, PhaseTimer& timer)
+      : prepared_(prepared),
+        timer_(timer),
+        stepper_(prepared.disc, prepared.operators, scene.coupling, scene.time, scene.contact,
+                 time_step(scene), timer, state) {}
+
+  Observation advance(State& state) override {
+    stepper_.advance(state);
+    return seen_at(prepared_, stepper_.last_step(), stepper_.report(), state, timer_);
+  }
+
+private:
+  PreparedScene& prepared_;
+  PhaseTimer& timer_;
+  MovingStepper<2> stepper_;
+};
+
+} // namespace
+
+FiniteElementLevel::FiniteElementLevel(const Scene& scene, MPI_Comm comm, PhaseTimer& timer)
+    : prepared_(prepare_scene(scene, comm, timer)),
+      coupling_(scene.coupling),
+      unknowns_(prepared_->disc.unknowns()),
+      rest_(fom::initial_state(prepared_->disc)) {}
+
+std::string FiniteElementLevel::name() const {
+  return std::string("full order, ") + coupling_name(coupling_);
+}
+
+std::vector<std::string> FiniteElementLevel::remarks(const Scene& scene, std::span<const double>) const {
+  if (scene.coupling != Coupling::fixed || scene.contact.film <= 0) return {};
+  return {
+      "model.coupling = \"fixed\" computes on the geometry of rest: [contact] is stated and has no effect"};
+}
+
+std::unique_ptr<Marcher> FiniteElementLevel::start(const Scene& scene, const State& state,
+                                                   PhaseTimer& timer) {
+  set_operating_point(*prepared_, scene);
+  if (coupling_ == Coupling::fixed) return std::make_unique<MarchAtRest>(*prepared_, scene, timer);
+  return std::make_unique<MovingMarch>(*prepared_, scene, state, timer);
+}
+
+Eigen::VectorXd FiniteElementLevel::displacements(const State& state) const {
+  return state.d[0].tail(prepared_->disc.solid_unknowns());
+}
+
+std::unique_ptr<StateMetric> FiniteElementLevel::metric() const {
+  if (coupling_ != Coupling::fixed) return nullptr;
+  auto metric = std::make_unique<StateMetric>();
+  const Operators<2>& operators = prepared_->operators;
+  metric->norm = [&operators](const Eigen::VectorXd& x) {
+    Eigen::VectorXd square(1);
+    square[0] = x.dot(operators.mass * x);
+    sum_over_ranks(operators.comm, square);
+    return std::sqrt(square[0]);
+  };
+  metric->root_weights = operators.mass.diagonal();
+  sum_over_ranks(operators.comm, metric->root_weights);
+  metric->root_weights = metric->root_weights.cwiseMax(0.0).cwiseSqrt();
+  return metric;
+}
+
+LevelView FiniteElementLevel::view(const Scene& scene) const {
+  const auto& disc = prepared_->disc;
+  const auto picture = std::make_shared<const FluidPicture<2>>(fluid_picture(disc));
+  LevelView view;
+  view.probes = prepared_->observation.probes;
+  view.fluid = picture->mesh;
+  view.solids = solid_picture(disc);
+  const auto& background = disc.problem.background;
+  for (const auto& facet : background.boundary)
+    view.outlines.push_back({background.points[facet.points[0]], background.points[facet.points[1]]});
+  view.membrane_box =
+      box_around(disc.problem.solids.empty() ? background.points : disc.problem.solids[0].mesh.points);
+  if (coupling_ == Coupling::fixed) {
+    view.fluid_fields = [&disc, picture](const State& state) { return fluid_fields(disc, *picture, state); };
+  } else {
+    // The discretisation follows the state, so the picture is made when it is asked for.
+    view.moved_fluid = [&disc](const State&) { return moved_picture(disc).mesh; };
+    view.fluid_fields = [&disc](const State& state) {
+      return fluid_fields(disc, fluid_picture(disc), state);
+    };
+  }
+  view.rows = {!scene.problem.stated, scene.space == Space::plane, coupling_ != Coupling::fixed,
+               prepared_->observation.stated.columns};
+  view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
+  return view;
+}
+
+} // namespace undula::fom

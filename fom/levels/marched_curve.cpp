@@ -1,0 +1,131 @@
+#include "fom/levels/marched_curve.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "fom/output/last_periods.hpp"
+#include "rom/base/units.hpp"
+
+namespace undula::fom {
+namespace {
+
+constexpr std::size_t averaged_unless_periodic = 3;
+
+struct Settled {
+  double head_mmHg = 0;
+  State state;
+};
+
+/// Whether a head is near enough to two others, the second nearer, for a line through their states to help.
+bool reaches(const Settled& first, const Settled& second, double head_mmHg) {
+  constexpr double farthest = 1.5; // in distances of the two
+  return head_mmHg - second.head_mmHg <= farthest * (second.head_mmHg - first.head_mmHg);
+}
+
+/// The state at `head_mmHg` on the line through two others, at the time of the second.
+State extrapolate(const Settled& first, const Settled& second, double head_mmHg) {
+  const double part = (head_mmHg - second.head_mmHg) / (second.head_mmHg - first.head_mmHg);
+  State state = second.state;
+  for (std::size_t level = 0; level < 2; ++level) {
+    state.x[level] += part * (second.state.x[level] - first.state.x[level]);
+    state.d[level] += part * (second.state.d[level] - first.state.d[level]);
+  }
+  return state;
+}
+
+Scene at_head(const Scene& scene, double head_mmHg) {
+  Scene point = scene;
+  point.operating_point.head = units::pressure_from_mmHg(head_mmHg);
+  return point;
+}
+
+std::vector<std::size_t> upwards(std::span<const double> heads_mmHg) {
+  std::vector<std::size_t> order(heads_mmHg.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return heads_mmHg[a] < heads_mmHg[b]; });
+  return order;
+}
+
+std::vector<CurvePoint> curve_from_head_to_head(MarchingLevel& level, const Scene& scene,
+                                                std::span<const double> heads_mmHg,
+                                                const std::function<void()>& on_point) {
+  std::vector<CurvePoint> points(heads_mmHg.size());
+  State state = level.initial_state();
+  std::vector<Settled> settled; // the last two heads
+  for (const std::size_t i : upwards(heads_mmHg)) {
+    const double head = heads_mmHg[i];
+    const Scene point = at_head(scene, head);
+    const bool extrapolated = settled.size() == 2 && reaches(settled[0], settled[1], head);
+    if (extrapolated) state = extrapolate(settled[0], settled[1], head);
+    PeriodicRun run = march_until_periodic(level, point, state);
+    if (extrapolated && run.state == RunState::failed) {
+      state = settled.back().state;
+      run = march_until_periodic(level, point, state);
+    }
+    points[i] = curve_point(run, head);
+    if (on_point) on_point();
+    if (run.state == RunState::failed) {
+      state = level.initial_state();
+      settled.clear();
+      continue;
+    }
+    if (!settled.empty() && settled.back().head_mmHg == head) settled.pop_back();
+    settled.push_back({head, state});
+    if (settled.size() > 2) settled.erase(settled.begin());
+  }
+  return points;
+}
+
+} // namespace
+
+CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
+  CurvePoint point;
+  point.head_mmHg = head_mmHg;
+  point.periodic = run.state == RunState::periodic;
+  point.reason = run.reason;
+  point.seconds = run.seconds;
+  const CycleMeans& cycles = run.cycles;
+  const std::size_t periods = cycles.periods.size();
+  point.periods = static_cast<int>(periods);
+  if (run.state == RunState::failed || periods == 0) return point;
+
+  const std::size_t averaged = point.periodic ? 1 : std::min(periods, averaged_unless_periodic);
+  const auto last_of = [&](const std::vector<double>& values, const char* name) {
+    const auto column = static_cast<std::size_t>(
+        std::find(cycles.columns.begin(), cycles.columns.end(), name) - cycles.columns.begin());
+    std::vector<double> last;
+    for (std::size_t period = periods - averaged; period < periods && column < cycles.columns.size();
+         ++period)
+      last.push_back(values[period * cycles.columns.size() + column]);
+    return last;
+  };
+  const auto mean = [&](const char* name) {
+    const auto last = last_of(cycles.mean, name);
+    return last.empty() ? CurvePoint::unknown
+                        : std::accumulate(last.begin(), last.end(), 0.0) / static_cast<double>(averaged);
+  };
+  point.flow_l_per_min = mean("outflow_l_per_min");
+  point.inflow_l_per_min = mean("inflow_l_per_min");
+  point.spread_l_per_min = last_periods(cycles, "outflow_l_per_min").spread;
+  point.power_mW = mean("hydraulic_power_mW");
+  point.holder_power_mW = mean("holder_power_mW");
+  point.speed_max_cm_per_s = std::ranges::max(last_of(cycles.maximum, "speed_max_cm_per_s"));
+  point.clearance_min_mm = std::ranges::min(last_of(cycles.minimum, "clearance_min_mm"));
+  return point;
+}
+
+std::vector<CurvePoint> marched_curve(MarchingLevel& level, const Scene& scene,
+                                      std::span<const double> heads_mmHg,
+                                      const std::function<void()>& on_point) {
+  if (level.goes_from_head_to_head()) return curve_from_head_to_head(level, scene, heads_mmHg, on_point);
+  std::vector<CurvePoint> points;
+  for (const double head : heads_mmHg) {
+    State state = level.initial_state();
+    points.push_back(curve_point(march_until_periodic(level, at_head(scene, head), state), head));
+    if (on_point) on_point();
+  }
+  return points;
+}
+
+} // namespace undula::fom

@@ -1,0 +1,65 @@
+#include "fom/levels/periodic_run.hpp"
+
+#include <chrono>
+
+#include "fom/levels/period_check.hpp"
+#include "fom/scene/scene_time.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/units.hpp"
+
+namespace undula::fom {
+namespace {
+
+/// Steps are counted from the first of this march.
+void append(TimeSeries& series, const Observation& seen) {
+  constexpr double mW_per_erg_per_s = 1e-4;
+  series.steps.push_back(static_cast<int>(series.rows()) + 1);
+  for (const double value : {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
+                             seen.hydraulic_power * mW_per_erg_per_s, seen.energy.holder * mW_per_erg_per_s,
+                             seen.speed_max, units::length_to_mm(seen.clearance_min)})
+    series.values.push_back(value);
+}
+
+} // namespace
+
+std::vector<std::string> cycle_columns() {
+  return {"outflow_l_per_min", "inflow_l_per_min",   "hydraulic_power_mW",
+          "holder_power_mW",   "speed_max_cm_per_s", "clearance_min_mm"};
+}
+
+PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State& state,
+                                 const StepCallback& on_step) {
+  const auto begin = std::chrono::steady_clock::now();
+  const int steps = scene.time.steps_per_period;
+  const double ramp_end = scene.time.ramp_periods / scene.operating_point.frequency;
+  PhaseTimer timer;
+  PeriodicRun run;
+  run.state = RunState::not_periodic;
+  TimeSeries series{cycle_columns(), {}, {}};
+  const auto check = period_check(level, scene);
+  try {
+    const auto marcher = level.start(scene, state, timer);
+    for (int period = 1; period <= scene.time.periods && run.state != RunState::periodic; ++period) {
+      const bool ramped = state.time < ramp_end - time_step(scene) / 2;
+      check->begin(state);
+      march_to(*marcher, state.step + steps, state, [&](const State& now, const Observation& seen) {
+        append(series, seen);
+        check->step(now, seen);
+        if (on_step) on_step(now, seen);
+      });
+      if (check->end(period, ramped, state)) run.state = RunState::periodic;
+    }
+    if (run.state == RunState::not_periodic)
+      run.reason = check->left() + " over period " + std::to_string(scene.time.periods) + " (tolerance " +
+                   std::to_string(scene.training.periodic_tolerance) + ")";
+  } catch (const NumericsError& error) {
+    run.state = RunState::failed;
+    run.reason = error.what();
+  }
+  run.cycles = summarise_cycles(series, steps);
+  for (const auto& [phase, entry] : timer.records()) run.seconds[phase] = entry.seconds;
+  run.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return run;
+}
+
+} // namespace undula::fom

@@ -1,0 +1,38 @@
+#include "fom/levels/prepared_scene.hpp"
+
+#include <utility>
+
+#include "fom/levels/scene_problem.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
+
+namespace undula::fom {
+
+std::unique_ptr<PreparedScene> prepare_scene(const Scene& scene, MPI_Comm comm, PhaseTimer& timer) {
+  auto prepared = std::make_unique<PreparedScene>();
+  FsiProblem<2> problem;
+  {
+    const auto scope = timer.measure("mesh");
+    problem = scene_problem(scene);
+  }
+  {
+    const auto scope = timer.measure("cut");
+    prepared->disc = discretise(std::move(problem), CutOptions{});
+  }
+  prepared->operators = build_operators(prepared->disc, comm, timer);
+  const bool stated = scene.problem.stated;
+  prepared->observation = plan_observation(prepared->disc, stated ? 0 : membrane_probe_count);
+  if (stated) prepared->observation.stated = plan_stated_observables(prepared->disc, scene);
+  return prepared;
+}
+
+void set_operating_point(PreparedScene& prepared, const Scene& scene) {
+  if (scene.problem.stated) return; // its conditions are expressions of its own
+  auto& problem = prepared.disc.problem;
+  problem.boundary.at(outlet_name).pressure = [scene](double t) { return outlet_pressure(scene, t); };
+  for (auto& body : problem.solids)
+    body.imposed_displacement = [scene](const Point<2>&, double t) {
+      return Point<2>(0.0, holder_displacement(scene, t));
+    };
+}
+
+} // namespace undula::fom

@@ -1,0 +1,31 @@
+#include "fom/scene/common_problem.hpp"
+
+#include "rom/base/error.hpp"
+
+namespace undula::fom {
+
+FsiProblem<2> problem_without_meshes(const Scene& scene) {
+  FsiProblem<2> problem;
+  problem.space = scene.space;
+  problem.flow = scene.flow;
+  problem.fluid = scene.fluid;
+  problem.stabilisation = scene.stabilisation;
+  problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
+  return problem;
+}
+
+std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem) {
+  std::vector<RefinementBox<2>> boxes;
+  for (const auto& [name, box] : problem.refinements)
+    boxes.push_back({{box.box[0][0], box.box[0][1]}, {box.box[1][0], box.box[1][1]}, box.size});
+  return boxes;
+}
+
+void require_pump(const Scene& scene, const std::string& command) {
+  if (!scene.problem.stated) return;
+  throw InputError(command + " needs a scene of a pump", "a scene with [domain] or [body.NAME]",
+                   "a scene with \"geometry.profile\" or meshes; undula solve takes any scene",
+                   scene.file.string());
+}
+
+} // namespace undula::fom

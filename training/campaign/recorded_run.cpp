@@ -1,0 +1,87 @@
+#include "training/campaign/recorded_run.hpp"
+
+#include <deque>
+#include <utility>
+
+namespace undula::training {
+
+namespace {
+
+/// Snapshots of the last periods, in the order of time.
+struct Sampler {
+  int every = 1;
+  std::size_t capacity = 0;
+  std::deque<std::pair<double, State>> kept;
+
+  void take(const State& state) {
+    if (state.step % every != 0) return;
+    State copy;
+    copy.x[0] = state.x[0];
+    copy.d[0] = state.d[0];
+    kept.emplace_back(state.time, std::move(copy));
+    if (kept.size() > capacity) kept.pop_front();
+  }
+
+  void write(const Discretisation<2>& disc, RunRecord& record) const {
+    const auto store = [&](const char* field, const char* unit, const std::vector<int>& unknowns,
+                           bool displacement) {
+      Snapshots snapshots;
+      snapshots.unit = unit;
+      snapshots.values.resize(static_cast<Eigen::Index>(unknowns.size()),
+                              static_cast<Eigen::Index>(kept.size()));
+      for (std::size_t k = 0; k < kept.size(); ++k) {
+        const State& state = kept[k].second;
+        const Eigen::VectorXd& levels = displacement ? state.d[0] : state.x[0];
+        snapshots.values.col(static_cast<Eigen::Index>(k)) = levels(unknowns);
+      }
+      record.snapshots.emplace(field, std::move(snapshots));
+    };
+    store(velocity_field, "cm/s", velocity_unknowns(disc), false);
+    store(pressure_field, "dyn/cm^2", pressure_unknowns(disc), false);
+    store(displacement_field, "cm", displacement_unknowns(disc), true);
+    for (const auto& [time, state] : kept) record.times.push_back(time);
+  }
+};
+
+} // namespace
+
+std::vector<int> velocity_unknowns(const Discretisation<2>& disc) {
+  std::vector<int> unknowns;
+  for (std::size_t node = 0; node < disc.fluid_nodes.dof_point.size(); ++node)
+    for (int c = 0; c < 2; ++c) unknowns.push_back(disc.velocity_unknown(static_cast<int>(node), c));
+  return unknowns;
+}
+
+std::vector<int> pressure_unknowns(const Discretisation<2>& disc) {
+  std::vector<int> unknowns;
+  for (std::size_t node = 0; node < disc.fluid_nodes.dof_point.size(); ++node)
+    unknowns.push_back(disc.pressure_unknown(static_cast<int>(node)));
+  return unknowns;
+}
+
+std::vector<int> displacement_unknowns(const Discretisation<2>& disc) {
+  std::vector<int> unknowns;
+  for (int unknown = disc.fluid_unknowns(); unknown < disc.unknowns(); ++unknown) unknowns.push_back(unknown);
+  return unknowns;
+}
+
+RunRecord record_run(FiniteElementLevel& level, const Scene& scene) {
+  const auto& plan = scene.training;
+  Sampler sampler{
+      scene.time.steps_per_period / plan.snapshots_per_period,
+      static_cast<std::size_t>(plan.snapshots_per_period) * static_cast<std::size_t>(plan.sampled_periods),
+      {}};
+  State state = level.initial_state();
+  PeriodicRun run = march_until_periodic(level, scene, state,
+                                         [&](const State& now, const Observation&) { sampler.take(now); });
+  RunRecord record;
+  record.point = scene.operating_point;
+  record.state = run.state;
+  record.reason = std::move(run.reason);
+  record.cycles = std::move(run.cycles);
+  record.seconds = std::move(run.seconds);
+  sampler.write(level.prepared().disc, record);
+  return record;
+}
+
+} // namespace undula::training

@@ -1,0 +1,26 @@
+// One full-order run of a campaign: marched until it repeats from period to period, with its snapshots.
+#pragma once
+
+#include "fom/levels/finite_element_level.hpp"
+#include "fom/levels/periodic_run.hpp"
+#include "training/campaign/campaign_store.hpp"
+#include "training/training.hpp"
+
+namespace undula::training {
+
+/// The operating point of `scene` from rest (march_until_periodic), with snapshots of the last
+/// scene.training.sampled_periods periods. A NumericsError ends in a record of state `failed`. Collective
+/// over the communicator of the level; the record is complete on every rank.
+RunRecord record_run(FiniteElementLevel& level, const Scene& scene);
+
+/// Places of a field in the natural order of unknowns; the rows of its snapshots.
+std::vector<int> velocity_unknowns(const Discretisation<2>& disc);
+std::vector<int> pressure_unknowns(const Discretisation<2>& disc);
+std::vector<int> displacement_unknowns(const Discretisation<2>& disc);
+
+/// Names of the fields in RunRecord::snapshots.
+inline constexpr const char* velocity_field = "velocity";
+inline constexpr const char* pressure_field = "pressure";
+inline constexpr const char* displacement_field = "displacement";
+
+} // namespace undula::training

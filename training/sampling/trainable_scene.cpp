@@ -1,0 +1,37 @@
+#include "training/sampling/trainable_scene.hpp"
+
+#include <string>
+
+#include "fom/scene/common_problem.hpp"
+#include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
+
+namespace undula::training {
+
+void require_trainable(const Scene& scene) {
+  require_pump(scene, "undula train");
+  const auto refuse = [&](bool stated, const char* what, const std::string& seen, const char* allowed,
+                          const char* section) {
+    if (!stated) return;
+    throw InputError(what, seen, allowed, scene.file.string() + ", section [" + section + "]");
+  };
+  refuse(scene.space == Space::thin_gap, "a thin-gap scene needs no reduced model",
+         "model.space = \"thin-gap\"",
+         "undula hq on the scene itself, which takes seconds; or a scene of finite elements", "model");
+  refuse(scene.coupling != Coupling::fixed, "a reduced model is projected from operators that never change",
+         std::string("model.coupling = \"") + coupling_name(scene.coupling) + "\"", "coupling = \"fixed\"",
+         "model");
+  refuse(scene.solid_model != SolidModel::linear,
+         "a reduced model is projected from linear operators of the solid",
+         "a model.solid with a nonlinear law", "solid = \"linear\"", "model");
+  refuse(scene.contact.film > 0, "a reduced model knows no contact", "contact.film_mm > 0",
+         "no film, contact.film_mm = 0", "contact");
+  refuse(scene.stabilisation.velocity_scale != VelocityScale::reference,
+         "a reduced model is projected from penalties that do not depend on the flow",
+         "stabilisation.velocity_scale = \"local\"", "velocity_scale = \"reference\"", "stabilisation");
+  refuse(scene.operating_point.stroke_scale != 1, "a campaign states the stroke that the holder makes",
+         "operating_point.stroke_scale = " + exact_number(scene.operating_point.stroke_scale),
+         "1; ask the reduced model for the scaled stroke instead", "operating_point");
+}
+
+} // namespace undula::training
