@@ -1,6 +1,24 @@
 #include "fom/output/visual_mesh.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
 namespace undula::fom {
+
+template <int dim>
+bool is_flat(const std::array<Point<dim>, dim + 1>& vertices) {
+  // A filter that divides by the measure (a gradient) loses all digits below this part of a regular simplex.
+  constexpr double least = 1e-9;
+  Eigen::Matrix<double, dim, dim> edges;
+  double longest = 0;
+  for (int a = 0; a <= dim; ++a) {
+    if (a > 0) edges.col(a - 1) = vertices[a] - vertices[0];
+    for (int b = 0; b < a; ++b) longest = std::max(longest, (vertices[a] - vertices[b]).norm());
+  }
+  return std::abs(edges.determinant()) <= least * std::pow(longest, dim);
+}
+
 template <int dim>
 FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
   FluidPicture<dim> picture;
@@ -30,6 +48,7 @@ FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
     }
     for (int s = part.simplex_begin; s < part.simplex_end; ++s) {
       const auto& vertices = cut.simplices[s];
+      if (is_flat<dim>(vertices)) continue;
       for (int a = 0; a <= dim; ++a)
         simplex[a] = add_point(vertices[a], nodes, barycentric_coordinates(cut.mesh, part.cell, vertices[a]));
       picture.mesh.cells.push_back(simplex);
@@ -88,6 +107,7 @@ std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const Stat
           {"velocity", "cm/s", dim, solid_part(state.x[0])}};
 }
 
+template bool is_flat<2>(const std::array<Point<2>, 3>&);
 template FluidPicture<2> fluid_picture(const Discretisation<2>&);
 template FluidPicture<2> moved_picture(const Discretisation<2>&);
 template std::vector<NodalField> fluid_fields(const Discretisation<2>&, const FluidPicture<2>&, const State&);

@@ -2,6 +2,7 @@
 // as a field.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "fom/output/field_writer.hpp"
@@ -9,9 +10,13 @@
 
 namespace undula::fom {
 
-/// Triangles (tetrahedra) that fill the fluid. Uncut elements share the points of their nodes; cut parts are
-/// filled by simplices with points of their own, so that a field may jump across a membrane thinner than an
-/// element.
+/// Whether a simplex has so little area (volume) for its longest edge that no gradient can be taken on it.
+template <int dim>
+bool is_flat(const std::array<Point<dim>, dim + 1>& vertices);
+
+/// Triangles (tetrahedra) that fill the fluid, flat ones left out. Uncut elements share the points of their
+/// nodes; cut parts are filled by simplices with points of their own, so that a field may jump across a
+/// membrane thinner than an element.
 template <int dim>
 struct FluidPicture {
   FieldMesh<dim> mesh;

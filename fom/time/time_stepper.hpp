@@ -6,6 +6,7 @@
 
 #include "fom/contact/wall_contact.hpp"
 #include "fom/system/newton.hpp"
+#include "fom/time/energy_terms.hpp"
 #include "fom/time/state.hpp"
 
 namespace undula::fom {
@@ -21,23 +22,6 @@ std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step, double ratio
 /// Displacement imposed on a node at time t, cm.
 template <int dim>
 Point<dim> imposed_displacement(const Discretisation<dim>& disc, const ImposedNode<dim>& node, double t);
-
-/// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
-///   holder + opening + body
-///     = viscous + stabilisation + damping + contact + (mass T x, x) + (elastic force(d), x).
-struct EnergyTerms {
-  double holder = 0;        ///< power of the imposed motion on the solids (reaction times velocity)
-  double boundary = 0;      ///< power of imposed fluid velocities
-  double opening = 0;       ///< power of the pressures on the openings
-  double body = 0;          ///< power of body forces
-  double viscous = 0;       ///< dissipation of the fluid (with the consistent interface terms)
-  double stabilisation = 0; ///< dissipation of the penalties
-  double damping = 0;       ///< dissipation of the solids, Kelvin-Voigt and Rayleigh
-  double contact = 0;       ///< power spent on closing the film of contact
-  double carried = 0;       ///< kinetic energy carried through openings (static_pressure, traction)
-  double kinetic = 0;       ///< energy, erg
-  double elastic = 0;       ///< energy, erg
-};
 
 template <int dim>
 class TimeStepper {
@@ -87,26 +71,5 @@ private:
   Eigen::VectorXd older_x_, older_d_;   ///< levels n-1 of the last step, for the energy terms
   Eigen::VectorXd convecting_;          ///< extrapolated velocity of the last step
 };
-
-/// How a nonlinear solid is brought to its steady state: body forces, pressures and imposed values rise in
-/// `load_steps` equal steps, Newton's method in each starts from the one before.
-struct LoadPath {
-  int load_steps = 1;
-  NewtonSettings newton;
-};
-
-/// Steady state by Picard iteration from `x` until the relative change is below `tolerance`. Solids in vacuo
-/// are at rest under their static loads (their unknowns are displacements here); solids in a fluid have to be
-/// imposed throughout, else InputError. Returns the linear solves
-/// taken. Throws NumericsError when `max_iterations` (or Newton's of a load step) do not suffice, leaving `x`
-/// at the last load that was reached.
-template <int dim>
-int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operators, double tolerance,
-                 int max_iterations, PhaseTimer& timer, Eigen::VectorXd& x, const LoadPath& path = {});
-
-/// TimeStepper::residual for a steady state, at time 0. Collective.
-template <int dim>
-Eigen::VectorXd steady_residual(const Discretisation<dim>& disc, const Operators<dim>& operators,
-                                const Eigen::VectorXd& x);
 
 } // namespace undula::fom

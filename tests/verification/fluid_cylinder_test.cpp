@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/reaction.hpp"
 #include "tests/verification/support/cylinder_channel.hpp"
 #include "tests/verification/support/default_weights.hpp"

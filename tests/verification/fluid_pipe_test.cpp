@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/reaction.hpp"
 #include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"

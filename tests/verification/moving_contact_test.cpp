@@ -15,10 +15,12 @@ namespace {
 constexpr double film = 0.08, stiffness = 100.0, thickness = 0.1, rest = 0.1;
 
 struct Landing {
-  double gap = 0;        ///< at the end, cm
-  double lowest_gap = 0; ///< of all steps
-  double speed = 0;      ///< of the block at the end, cm/s
-  int parts = 1;         ///< the most that a step was divided into
+  double gap = 0;             ///< at the end, cm
+  double lowest_gap = 0;      ///< of all steps
+  double speed = 0;           ///< of the block at the end, cm/s
+  int parts = 1;              ///< the most that a step was divided into
+  double operator_change = 0; ///< of the stiffness that the steppers share, dyn/cm
+  double unbalanced = 0;      ///< of the last step's residual on free unknowns, as a part of the film's force
 };
 
 /// Lands a block of 0.6 x `thickness`, pushed down by `pressure` (dyn/cm^2, over its lower side).
@@ -51,6 +53,12 @@ Landing land(double pressure, double dt, int steps) {
     landing.parts = std::max(landing.parts, stepper.report().parts);
   }
   landing.speed = state.x[0].tail(disc.solid_unknowns()).lpNorm<Eigen::Infinity>();
+  landing.operator_change =
+      (operators.stiffness - build_operators(disc, MPI_COMM_SELF, timer).stiffness).norm();
+  Eigen::VectorXd residual = stepper.last_step().residual(state);
+  for (int unknown = 0; unknown < disc.unknowns(); ++unknown)
+    if (disc.is_constrained[unknown]) residual[unknown] = 0;
+  landing.unbalanced = residual.norm() / (pressure * 0.6);
   std::printf("pressure %7.0f: gap %.5f (film alone %.5f), lowest %.5f, speed %.1e, parts %d\n", pressure,
               landing.gap, film / (1 + pressure / stiffness), landing.lowest_gap, landing.speed,
               landing.parts);
@@ -61,6 +69,9 @@ TEST(Contact, HoldsABlockOnItsFilm) {
   const auto landing = land(100.0, 5e-3, 120);
   EXPECT_LT(landing.speed, 0.02);
   EXPECT_NEAR(landing.gap, film / 2, 0.02 * film);
+  // Contact is a term of the step: the operators stay those of the bodies, and the residual holds the film.
+  EXPECT_EQ(landing.operator_change, 0);
+  EXPECT_LT(landing.unbalanced, 1e-7);
 }
 
 /// Onto a film of half an element.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
 #include "tests/verification/support/names.hpp"

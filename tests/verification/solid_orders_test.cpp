@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"

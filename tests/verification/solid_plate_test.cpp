@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
 #include "tests/verification/support/names.hpp"

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
 #include "geometry/wave_pump/profile.hpp"
 #include "tests/verification/support/eigenmodes.hpp"

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "fom/levels/finite_element_level.hpp"
+#include "fom/output/visual_mesh.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "rom/base/error.hpp"
 
@@ -35,6 +36,8 @@ TEST(FluidPicture, FillsTheFluidAndKeepsLinearFields) {
     drawn += std::abs(edges.determinant()) / 2;
   }
   EXPECT_NEAR(drawn, fluid, 1e-12 * fluid);
+  for (const auto& cell : mesh.cells)
+    EXPECT_FALSE(is_flat<2>({mesh.points[cell[0]], mesh.points[cell[1]], mesh.points[cell[2]]}));
 
   State state = level.initial_state();
   const auto linear = [](const Point<2>& x) { return Eigen::Vector3d(2 * x[0] - x[1], x[1] + 1, 3 - x[0]); };
@@ -48,6 +51,13 @@ TEST(FluidPicture, FillsTheFluidAndKeepsLinearFields) {
     EXPECT_NEAR(fields[0].values[2 * p + 1], expected[1], 1e-10);
     EXPECT_NEAR(fields[1].values[p], expected[2], 1e-10);
   }
+}
+
+TEST(FluidPicture, ATriangleIsFlatWhereItsAreaIsNothingBesideItsLength) {
+  EXPECT_FALSE(is_flat<2>({Point<2>(0, 0), Point<2>(1, 0), Point<2>(0.5, 1e-6)}));
+  EXPECT_TRUE(is_flat<2>({Point<2>(0, 0), Point<2>(1, 0), Point<2>(0.5, 1e-12)}));
+  EXPECT_TRUE(is_flat<2>({Point<2>(1, 1), Point<2>(1, 1), Point<2>(2, 1)}));
+  EXPECT_FALSE(is_flat<2>({Point<2>(0, 0), Point<2>(1e-8, 0), Point<2>(0, 1e-8)})); // small is not flat
 }
 
 TEST(LevelView, BoundaryEdgesAreThoseOfOneTriangle) {

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "fom/levels/finite_element_level.hpp"
 #include "fom/levels/march.hpp"
 #include "fom/output/run_directory.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -95,12 +96,12 @@ protected:
   /// Runs to the end of the scene, or is killed after the step `killed`.
   State run(const Scene& scene, const std::string& name, ExistingRun existing, int killed = -1) {
     PhaseTimer timer;
-    const auto level = prepare_level(scene, MPI_COMM_SELF, timer);
-    State state = level->initial_state();
-    RunDirectory output(folder / name, level->view(scene), scene, existing, 1, state);
+    FiniteElementLevel level(scene, MPI_COMM_SELF, timer);
+    State state = level.initial_state();
+    RunDirectory output(folder / name, level.view(scene), scene, existing, 1, state);
     first_step = state.step;
     solid_area.clear();
-    march(*level, scene, state, timer, [&](const State& now, const Observation& seen) {
+    march(level, scene, state, timer, [&](const State& now, const Observation& seen) {
       output.record(now, seen);
       const auto& prepared = *std::get<std::unique_ptr<PreparedScene>>(level);
       solid_area[now.step] = area_in_channel(prepared.disc.placed_solids[0]);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
 #include "tests/verification/support/flow_errors.hpp"
 #include "tests/verification/support/names.hpp"

@@ -1,0 +1,67 @@
+#include "fom/system/newton.hpp"
+#include "fom/time/step_parts.hpp"
+#include "fom/time/time_stepper.hpp"
+
+namespace undula::fom {
+
+template <int dim>
+Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
+  const auto& x = state.x[0];
+  const Eigen::VectorXd rate = (alpha_[0] * x + alpha_[1] * state.x[1] + alpha_[2] * older_x_) / dt_;
+  Eigen::VectorXd sum = operators_.mass * rate + operators_.physical * x + operators_.stabilisation * x +
+                        operators_.damping * x + operators_.stiffness * state.d[0] +
+                        convection_of(disc_, operators_, convecting_, x) +
+                        jumps_of(disc_, operators_, convecting_, x);
+  if (contact_) sum += contact_->stiffness * state.d[0];
+  sum_over_ranks(operators_.comm, sum);
+  if (operators_.has_nonlinear_solid) {
+    const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
+    sum += solids.elastic + solids.viscous;
+  }
+  return sum - loads(state.time);
+}
+
+template <int dim>
+EnergyTerms TimeStepper<dim>::energy(const State& state) const {
+  const auto& x = state.x[0];
+  const Eigen::VectorXd physical = operators_.physical * x,
+                        penalties =
+                            operators_.stabilisation * x + jumps_of(disc_, operators_, convecting_, x),
+                        damping = operators_.damping * x, elastic = operators_.stiffness * state.d[0];
+  const Eigen::VectorXd reaction = residual(state);
+  const Eigen::VectorXd load = loads_at(disc_, operators_, state.time);
+
+  Eigen::VectorXd sums(7);
+  sums << x.dot(physical), x.dot(penalties), x.dot(damping), 0.5 * x.dot(operators_.mass * x),
+      0.5 * state.d[0].dot(elastic), carried_power(disc_, operators_, convecting_, x),
+      contact_ ? x.dot(contact_->stiffness * state.d[0]) : 0.0;
+  sum_over_ranks(operators_.comm, sums);
+  EnergyTerms terms;
+  terms.viscous = sums[0];
+  terms.stabilisation = sums[1];
+  terms.damping = sums[2];
+  terms.kinetic = sums[3];
+  terms.elastic = sums[4];
+  if (contact_) terms.contact = sums[6] - x.dot(contact_->load);
+  if (operators_.has_nonlinear_solid) {
+    const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
+    terms.elastic += solids.energy;
+    terms.damping += x.dot(solids.viscous);
+  }
+  terms.carried = sums[5];
+  for (const auto& node : disc_.imposed)
+    for (int c = 0; c < dim; ++c) terms.holder += reaction[node.unknown + c] * x[node.unknown + c];
+  for (const auto& constrained : disc_.constrained)
+    terms.boundary += reaction[constrained.unknown] * x[constrained.unknown];
+  for (const auto& [name, functional] : operators_.openings) {
+    const auto& pressure = disc_.problem.boundary.at(name).pressure;
+    if (pressure) terms.opening -= pressure(state.time) * functional.dot(x);
+  }
+  terms.body = load.dot(x) - terms.opening;
+  return terms;
+}
+
+template Eigen::VectorXd TimeStepper<2>::residual(const State&) const;
+template EnergyTerms TimeStepper<2>::energy(const State&) const;
+
+} // namespace undula::fom

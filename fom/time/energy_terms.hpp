@@ -1,0 +1,23 @@
+// Powers and energies of one step.
+#pragma once
+
+namespace undula::fom {
+
+/// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
+///   holder + opening + body
+///     = viscous + stabilisation + damping + contact + (mass T x, x) + (elastic force(d), x).
+struct EnergyTerms {
+  double holder = 0;        ///< power of the imposed motion on the solids (reaction times velocity)
+  double boundary = 0;      ///< power of imposed fluid velocities
+  double opening = 0;       ///< power of the pressures on the openings
+  double body = 0;          ///< power of body forces
+  double viscous = 0;       ///< dissipation of the fluid (with the consistent interface terms)
+  double stabilisation = 0; ///< dissipation of the penalties
+  double damping = 0;       ///< dissipation of the solids, Kelvin-Voigt and Rayleigh
+  double contact = 0;       ///< power spent on closing the film of contact
+  double carried = 0;       ///< kinetic energy carried through openings (static_pressure, traction)
+  double kinetic = 0;       ///< energy, erg
+  double elastic = 0;       ///< energy, erg
+};
+
+} // namespace undula::fom
