@@ -103,7 +103,7 @@ protected:
     solid_area.clear();
     march(level, scene, state, timer, [&](const State& now, const Observation& seen) {
       output.record(now, seen);
-      const auto& prepared = *std::get<std::unique_ptr<PreparedScene>>(level);
+      const auto& prepared = level.prepared();
       solid_area[now.step] = area_in_channel(prepared.disc.placed_solids[0]);
       sizes.insert(now.x[0].size());
       if (now.step == killed) throw Kill();
