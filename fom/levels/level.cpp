@@ -47,8 +47,8 @@ LevelView view(const PreparedScene& prepared, const Scene& scene) {
       return fluid_fields(disc, fluid_picture(disc), state);
     };
   }
-  view.rows = {!scene.problem.stated, scene.space == Space::plane, scene.coupling != Coupling::fixed,
-               prepared.observation.stated.columns};
+  view.rows = {!scene.problem.general, scene.space == Space::plane, scene.coupling != Coupling::fixed,
+               prepared.observation.general.columns};
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;
 }

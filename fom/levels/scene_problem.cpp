@@ -9,11 +9,11 @@
 namespace undula::fom {
 
 FsiProblem<2> scene_problem(const Scene& scene) {
-  return scene.problem.stated ? stated_problem(scene) : pump_problem(scene);
+  return scene.problem.general ? general_problem(scene) : pump_problem(scene);
 }
 
 void require_pump(const Scene& scene, const std::string& command) {
-  if (!scene.problem.stated) return;
+  if (!scene.problem.general) return;
   throw InputError(command + " needs a scene of a pump", "a scene with [domain] or [body.NAME]",
                    "a scene with \"geometry.profile\" or meshes; undula solve takes any scene",
                    scene.file.string());
@@ -37,12 +37,12 @@ std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem) 
 }
 
 double time_step(const Scene& scene) {
-  if (scene.problem.stated) return scene.time.step;
+  if (scene.problem.general) return scene.time.step;
   return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);
 }
 
 int last_step(const Scene& scene) {
-  if (scene.problem.stated) return static_cast<int>(std::lround(scene.time.end / scene.time.step));
+  if (scene.problem.general) return static_cast<int>(std::lround(scene.time.end / scene.time.step));
   return scene.time.periods * scene.time.steps_per_period;
 }
 

@@ -12,7 +12,7 @@
 namespace undula::fom {
 
 /// Meshes and conditions of a finite-element scene: of the pump (pump_problem), or as the scene states them
-/// (stated_problem). Throws InputError for what is wrong with them.
+/// (general_problem). Throws InputError for what is wrong with them.
 FsiProblem<2> scene_problem(const Scene& scene);
 
 /// What every scene says alike of its problem: space, flow, fluid, interface and stabilisation.
@@ -21,7 +21,7 @@ FsiProblem<2> problem_without_meshes(const Scene& scene);
 /// The boxes [refine.NAME] of a scene.
 std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem);
 
-/// Time step, s: one period / steps_per_period, or the one a stated scene names.
+/// Time step, s: one period / steps_per_period, or the one a general problem names.
 double time_step(const Scene& scene);
 
 /// Throws InputError, naming the scene, where `command` needs a pump and the scene states a problem of its

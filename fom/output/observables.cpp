@@ -150,7 +150,7 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   }
   if (const auto inlet = operators.openings.find(inlet_name); inlet != operators.openings.end())
     seen.inflow = -inlet->second.dot(x);
-  seen.stated = observe_stated(plan.stated, disc, operators, stepper, state);
+  seen.general = observe_general(plan.general, disc, operators, stepper, state);
   seen.energy = stepper.energy(state);
   for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());

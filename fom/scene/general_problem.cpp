@@ -285,7 +285,7 @@ SolidBody<2> body_of(const std::string& name, const BodyStatement& statement, bo
 
 } // namespace
 
-FsiProblem<2> stated_problem(const Scene& scene) {
+FsiProblem<2> general_problem(const Scene& scene) {
   const ProblemStatement& statement = scene.problem;
   const Functions functions(scene);
   auto problem = problem_without_meshes(scene);
