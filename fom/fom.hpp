@@ -8,8 +8,7 @@
 //   scene/      from a file to settings    machines/              from a scene to the problem of a pump
 //   output/     what is written of a run
 //
-// Folders of the first four lines know nothing of scene/, machines/ and output/ (tests/includes.py checks
-// it).
+// Folders of the first four lines know nothing of the others, thin_gap/ included (.ci/check_includes).
 #pragma once
 
 namespace undula::geometry {}

@@ -52,7 +52,7 @@ SolvedRun summary(const Scene& scene, const RunDirectory& output, int unknowns, 
   SolvedRun run = {
       scene.name, scene_hash(scene), output.folder().string(), unknowns, ranks, first_step, last_step, {},
       {}};
-  if (scene.problem.stated) {
+  if (scene.problem.general) {
     run.statistics = series_statistics(output.series(), scene.output.statistics_from);
   } else {
     run.periods = summarise_periods(output.series(), scene.time.steps_per_period);

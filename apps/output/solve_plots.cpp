@@ -134,7 +134,7 @@ void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, co
 } // namespace
 
 void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
-  if (scene.problem.stated) {
+  if (scene.problem.general) {
     plot_state(run.folder(), run.view(), state, scene.name + ", t = " + shortest(state.time) + " s");
     return;
   }

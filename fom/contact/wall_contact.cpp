@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "geometry/mesh/polygons.hpp"
+
 namespace undula::fom {
 
 namespace {
@@ -77,7 +79,7 @@ Gap<dim> gap_to_walls(const WallContact<dim>& contact, const Point<dim>& x) {
   double nearest = std::numeric_limits<double>::infinity(), inward = -1;
   for (const auto& wall : contact.walls) {
     const Point<dim> along = wall.points[1] - wall.points[0];
-    const double s = std::clamp((x - wall.points[0]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const double s = nearest_on_segment<dim>(wall.points[0], wall.points[1], x);
     const Point<dim> away = x - wall.points[0] - s * along;
     const double distance = away.norm(), side = away.dot(wall.normal);
     // At a corner, two walls are equally near; the one that faces x more decides which side x is on.

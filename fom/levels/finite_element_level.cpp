@@ -125,8 +125,8 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
       return fluid_fields(disc, fluid_picture(disc), state);
     };
   }
-  view.rows = {!scene.problem.stated, scene.space == Space::plane, coupling_ != Coupling::fixed,
-               prepared_->observation.stated.columns};
+  view.rows = {!scene.problem.general, scene.space == Space::plane, coupling_ != Coupling::fixed,
+               prepared_->observation.general.columns};
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;
 }

@@ -19,14 +19,14 @@ std::unique_ptr<PreparedScene> prepare_scene(const Scene& scene, MPI_Comm comm, 
     prepared->disc = discretise(std::move(problem), CutOptions{});
   }
   prepared->operators = build_operators(prepared->disc, comm, timer);
-  const bool stated = scene.problem.stated;
-  prepared->observation = plan_observation(prepared->disc, stated ? 0 : membrane_probe_count);
-  if (stated) prepared->observation.stated = plan_stated_observables(prepared->disc, scene);
+  const bool general = scene.problem.general;
+  prepared->observation = plan_observation(prepared->disc, general ? 0 : membrane_probe_count);
+  if (general) prepared->observation.general = plan_general_observables(prepared->disc, scene);
   return prepared;
 }
 
 void set_operating_point(PreparedScene& prepared, const Scene& scene) {
-  if (scene.problem.stated) return; // its conditions are expressions of its own
+  if (scene.problem.general) return; // its conditions are expressions of its own
   auto& problem = prepared.disc.problem;
   problem.boundary.at(outlet_name).pressure = [scene](double t) { return outlet_pressure(scene, t); };
   for (auto& body : problem.solids)

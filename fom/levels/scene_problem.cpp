@@ -6,7 +6,7 @@
 namespace undula::fom {
 
 FsiProblem<2> scene_problem(const Scene& scene) {
-  return scene.problem.stated ? stated_problem(scene) : pump_problem(scene);
+  return scene.problem.general ? general_problem(scene) : pump_problem(scene);
 }
 
 } // namespace undula::fom

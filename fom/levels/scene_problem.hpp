@@ -7,7 +7,7 @@
 namespace undula::fom {
 
 /// Meshes and conditions of a finite-element scene: of the pump (pump_problem), or as the scene states them
-/// (stated_problem). Throws InputError for what is wrong with them.
+/// (general_problem). Throws InputError for what is wrong with them.
 FsiProblem<2> scene_problem(const Scene& scene);
 
 } // namespace undula::fom

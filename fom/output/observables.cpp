@@ -6,8 +6,9 @@
 #include <set>
 
 #include "fom/fom.hpp"
-#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "geometry/mesh/innermost_cell.hpp"
+#include "geometry/mesh/polygons.hpp"
 
 namespace undula::fom {
 
@@ -28,21 +29,6 @@ std::pair<double, double> extent_at(const SimplexMesh<2>& mesh, double r) {
   return {low, high};
 }
 
-double distance_to_segment(const Point<2>& x, const std::array<Point<2>, 2>& segment) {
-  const Point<2> along = segment[1] - segment[0];
-  const double s = std::clamp((x - segment[0]).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (x - segment[0] - s * along).norm();
-}
-
-/// Even-odd rule along +x.
-bool inside(const Point<2>& x, const std::vector<std::array<Point<2>, 2>>& outline) {
-  bool odd = false;
-  for (const auto& [a, b] : outline)
-    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]))
-      odd = !odd;
-  return odd;
-}
-
 double minimal_clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, int solid_unknowns) {
   if (plan.walls.empty() || plan.skin_unknowns.empty()) return 0.0;
   const Eigen::VectorXd moved = d.tail(solid_unknowns);
@@ -50,8 +36,9 @@ double minimal_clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& 
   for (std::size_t i = 0; i < plan.skin_unknowns.size(); ++i) {
     const Point<2> x = plan.skin_positions[i] + moved.segment<2>(plan.skin_unknowns[i]);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const auto& wall : plan.walls) nearest = std::min(nearest, distance_to_segment(x, wall));
-    smallest = std::min(smallest, inside(x, plan.outline) ? nearest : -nearest);
+    for (const auto& wall : plan.walls)
+      nearest = std::min(nearest, distance_to_segment<2>(wall[0], wall[1], x));
+    smallest = std::min(smallest, inside_outline(plan.outline, x) ? nearest : -nearest);
   }
   return smallest;
 }
@@ -150,7 +137,7 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   }
   if (const auto inlet = operators.openings.find(inlet_name); inlet != operators.openings.end())
     seen.inflow = -inlet->second.dot(x);
-  seen.stated = observe_stated(plan.stated, disc, operators, stepper, state);
+  seen.general = observe_general(plan.general, disc, operators, stepper, state);
   seen.energy = stepper.energy(state);
   for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());

@@ -33,7 +33,7 @@ struct Observation {
   double tip_displacement = 0;    ///< cm, axial, innermost probe
   double holder_displacement = 0; ///< cm, axial, outermost probe
   MotionReport motion;            ///< of couplings that move the domain
-  std::vector<double> stated;     ///< by StatedObservables::columns, cgs
+  std::vector<double> general;    ///< by GeneralObservables::columns, cgs
 };
 
 /// Precomputed geometry of the observables.
@@ -44,7 +44,7 @@ struct ObservationPlan {
   std::vector<Point<dim>> skin_positions;           ///< at rest, cm
   std::vector<std::array<Point<dim>, dim>> walls;   ///< boundary simplices with imposed velocity
   std::vector<std::array<Point<dim>, dim>> outline; ///< all boundary simplices
-  StatedObservables stated;                         ///< empty but for scenes that state their problem
+  GeneralObservables general;                       ///< empty but for scenes that state their problem
 };
 
 /// No probes for `probe_count` 0.

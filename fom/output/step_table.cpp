@@ -12,7 +12,7 @@ constexpr double uJ_per_erg = 0.1;
 constexpr double mW_per_uJ_per_s = 1e-3;
 
 /// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves.
-enum class In { all, pump, stated, moving };
+enum class In { all, pump, general, moving };
 
 struct Column {
   const char* name;
@@ -30,8 +30,8 @@ constexpr Column columns[] = {
     {"holder_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.holder; }, In::all,
      true},
     {"boundary_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.boundary; },
-     In::stated, true},
-    {"body_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.body; }, In::stated,
+     In::general, true},
+    {"body_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.body; }, In::general,
      true},
     {"opening_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.opening; }, In::all,
      true},
@@ -69,7 +69,7 @@ bool has(const RowLayout& layout, const Column& column) {
   switch (column.in) {
     case In::pump:
       return layout.pump;
-    case In::stated:
+    case In::general:
       return !layout.pump;
     case In::moving:
       return layout.moving;
@@ -103,7 +103,7 @@ std::vector<std::string> observation_columns(const RowLayout& layout) {
   for (const auto& column : columns)
     if (has(layout, column))
       names.push_back(column.name + std::string(column.extensive && layout.per_depth ? "_per_cm" : ""));
-  for (const auto& column : layout.stated) names.push_back(column.name);
+  for (const auto& column : layout.general) names.push_back(column.name);
   return names;
 }
 
@@ -111,8 +111,8 @@ std::vector<double> observation_row(const Observation& seen, const RowLayout& la
   std::vector<double> values;
   for (const auto& column : columns)
     if (has(layout, column)) values.push_back(column.value(seen));
-  for (std::size_t i = 0; i < layout.stated.size(); ++i)
-    values.push_back(seen.stated[i] / layout.stated[i].cgs_per_unit);
+  for (std::size_t i = 0; i < layout.general.size(); ++i)
+    values.push_back(seen.general[i] / layout.general[i].cgs_per_unit);
   return values;
 }
 

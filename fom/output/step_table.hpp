@@ -11,7 +11,7 @@ struct RowLayout {
   bool pump = true;
   bool per_depth = false; ///< plane: powers and energies per cm of depth
   bool moving = false;    ///< the fluid's domain moves
-  std::vector<StatedColumn> stated;
+  std::vector<GeneralColumn> general;
 };
 
 /// Columns of time_series.csv, without "step".

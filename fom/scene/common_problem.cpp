@@ -22,7 +22,7 @@ std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem) 
 }
 
 void require_pump(const Scene& scene, const std::string& command) {
-  if (!scene.problem.stated) return;
+  if (!scene.problem.general) return;
   throw InputError(command + " needs a scene of a pump", "a scene with [domain] or [body.NAME]",
                    "a scene with \"geometry.profile\" or meshes; undula solve takes any scene",
                    scene.file.string());

@@ -203,7 +203,7 @@ std::vector<SceneKey> make_keys(const std::string& kind, const std::string& name
   for (SceneKey& key : keys) {
     key.path = kind + "." + name + (key.path.empty() ? "" : "." + key.path);
     const EntryKind* known = find_entry_kind(kind);
-    key.scope = known != nullptr ? known->scope : Scope::stated;
+    key.scope = known != nullptr ? known->scope : Scope::general;
   }
   return keys;
 }

@@ -15,7 +15,7 @@ namespace undula::fom {
 struct EntryKind {
   std::string kind; ///< "body": its sections are [body.NAME]
   std::string help;
-  Scope scope = Scope::stated;    ///< scenes that may have them
+  Scope scope = Scope::general;   ///< scenes that may have them
   bool added_by_override = false; ///< `--set` makes those that the scene has not
 };
 

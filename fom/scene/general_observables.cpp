@@ -67,8 +67,8 @@ int solid_named(const Discretisation<2>& disc, const std::string& name) {
 
 } // namespace
 
-StatedObservables plan_stated_observables(const Discretisation<2>& disc, const Scene& scene) {
-  StatedObservables plan;
+GeneralObservables plan_general_observables(const Discretisation<2>& disc, const Scene& scene) {
+  GeneralObservables plan;
   const bool axisymmetric = scene.space == Space::axisymmetric;
   const auto axes = expression_variables(scene.space);
   const auto add_column = [&](const std::string& name, double cgs_per_unit) {
@@ -85,7 +85,7 @@ StatedObservables plan_stated_observables(const Discretisation<2>& disc, const S
   // The radial sum over a ring is no force.
   plan.components = axisymmetric ? std::vector<int>{1} : std::vector<int>{0, 1};
   for (const auto& [name, statement] : scene.problem.forces) {
-    StatedForce force;
+    GeneralForce force;
     for (const auto& target : statement.on) {
       const int solid = solid_named(disc, target);
       if (solid >= 0)
@@ -126,9 +126,9 @@ StatedObservables plan_stated_observables(const Discretisation<2>& disc, const S
   return plan;
 }
 
-std::vector<double> observe_stated(const StatedObservables& plan, const Discretisation<2>& disc,
-                                   const Operators<2>& operators, const TimeStepper<2>& stepper,
-                                   const State& state) {
+std::vector<double> observe_general(const GeneralObservables& plan, const Discretisation<2>& disc,
+                                    const Operators<2>& operators, const TimeStepper<2>& stepper,
+                                    const State& state) {
   std::vector<double> values;
   const auto& x = state.x[0];
   for (const auto& name : plan.openings) values.push_back(operators.openings.at(name).dot(x));

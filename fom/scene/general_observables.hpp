@@ -7,13 +7,13 @@
 namespace undula::fom {
 
 /// One value per step in surface units; its name ends in the unit.
-struct StatedColumn {
+struct GeneralColumn {
   std::string name;
   double cgs_per_unit = 1;
 };
 
 /// A force summed over solids and boundaries.
-struct StatedForce {
+struct GeneralForce {
   std::vector<int> solids;
   std::vector<std::string> boundaries;
 };
@@ -25,10 +25,10 @@ struct SolidPoint {
 };
 
 /// Columns in the order of `columns`: openings, forces, points of solids, points of the fluid.
-struct StatedObservables {
-  std::vector<StatedColumn> columns;
+struct GeneralObservables {
+  std::vector<GeneralColumn> columns;
   std::vector<std::string> openings;
-  std::vector<StatedForce> forces;
+  std::vector<GeneralForce> forces;
   std::vector<int> components; ///< of a force that are reported
   std::vector<SolidPoint> solid_points;
   std::vector<Point<2>> fluid_points; ///< cm
@@ -36,11 +36,11 @@ struct StatedObservables {
 
 /// Plans what the scene states. Throws InputError for a point outside of its body, or outside of the fluid at
 /// rest.
-StatedObservables plan_stated_observables(const Discretisation<2>& disc, const Scene& scene);
+GeneralObservables plan_general_observables(const Discretisation<2>& disc, const Scene& scene);
 
 /// One value per column, cgs. Points of the fluid that a solid covers give nan. Collective.
-std::vector<double> observe_stated(const StatedObservables& plan, const Discretisation<2>& disc,
-                                   const Operators<2>& operators, const TimeStepper<2>& stepper,
-                                   const State& state);
+std::vector<double> observe_general(const GeneralObservables& plan, const Discretisation<2>& disc,
+                                    const Operators<2>& operators, const TimeStepper<2>& stepper,
+                                    const State& state);
 
 } // namespace undula::fom

@@ -9,6 +9,7 @@
 #include "fom/scene/expression.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
+#include "geometry/mesh/polygons.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
@@ -53,18 +54,9 @@ std::vector<Point<2>> corners_of(const ShapeStatement& shape, double size, bool 
   return points;
 }
 
-double twice_area(const std::vector<Point<2>>& points) {
-  double sum = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto &a = points[i], &b = points[(i + 1) % points.size()];
-    sum += a[0] * b[1] - a[1] * b[0];
-  }
-  return sum;
-}
-
 /// Counter-clockwise, with the tags of its edges.
 void orient(TaggedPolygon& polygon) {
-  if (twice_area(polygon.points) > 0) return;
+  if (polygon_area(polygon.points) > 0) return;
   std::reverse(polygon.points.begin(), polygon.points.end());
   // Edge j now runs from the old corner n-1-j to n-2-j.
   std::reverse(polygon.tags.begin(), polygon.tags.end());
@@ -86,11 +78,8 @@ public:
 
   double operator()(const Point<2>& x) const {
     double size = largest_;
-    for (const auto& edge : edges_) {
-      const Point<2> along = edge.b - edge.a;
-      const double s = std::clamp((x - edge.a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-      size = std::min(size, edge.size + growth_ * (x - edge.a - s * along).norm());
-    }
+    for (const auto& edge : edges_)
+      size = std::min(size, edge.size + growth_ * distance_to_segment<2>(edge.a, edge.b, x));
     for (const auto& box : boxes_) size = std::min(size, size_about(box, growth_, x));
     return size;
   }
@@ -286,7 +275,7 @@ SolidBody<2> body_of(const std::string& name, const BodyStatement& statement, bo
 
 } // namespace
 
-FsiProblem<2> stated_problem(const Scene& scene) {
+FsiProblem<2> general_problem(const Scene& scene) {
   const ProblemStatement& statement = scene.problem;
   const Functions functions(scene);
   auto problem = problem_without_meshes(scene);

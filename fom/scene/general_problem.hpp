@@ -10,6 +10,6 @@ namespace undula::fom {
 /// names. A domain without openings has its pressure pinned. Throws InputError, naming the section, for
 /// shapes that cannot be meshed, free bodies without density or stiffness and sides whose condition they do
 /// not fit.
-FsiProblem<2> stated_problem(const Scene& scene);
+FsiProblem<2> general_problem(const Scene& scene);
 
 } // namespace undula::fom

@@ -83,7 +83,7 @@ struct ForceStatement {
 };
 
 struct ProblemStatement {
-  bool stated = false; ///< false: the scene is a pump
+  bool general = false; ///< a domain and bodies of its own; false: the scene is a pump
   std::map<std::string, double> constants;
   DomainStatement domain;
   std::array<std::string, 2> body_force; ///< on the fluid, dyn/cm^3

@@ -51,7 +51,7 @@ struct TimeSettings : SteppingSettings {
   int steps_per_period = 0;
   int periods = 0;
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
-  double step = 0;         ///< s, of scenes without an actuator (Scene::problem.stated)
+  double step = 0;         ///< s, of scenes without an actuator (Scene::problem.general)
   double end = 0;          ///< s, of the same
 };
 
@@ -93,7 +93,7 @@ struct TrainingPlan {
 struct OutputSettings {
   int fields_every = 0;       ///< steps between field files, 0: none
   int checkpoint_every = 0;   ///< steps between checkpoints, 0: none
-  double statistics_from = 0; ///< s, where the window of the statistics begins (Scene::problem.stated)
+  double statistics_from = 0; ///< s, where the window of the statistics begins (Scene::problem.general)
 };
 
 struct Scene {

@@ -144,7 +144,7 @@ void check_training(const Scene& scene, const std::string& where) {
 
 void check_consistency(const Scene& scene, const std::string& where) {
   check_refinements(scene, where);
-  if (scene.problem.stated) {
+  if (scene.problem.general) {
     check_statement(scene, where);
     check_contact(scene, where);
     return;

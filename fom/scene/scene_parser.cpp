@@ -54,7 +54,7 @@ class SceneParser {
 public:
   /// The whole file.
   void read_file(const toml::table& file, const Origin& origin) {
-    scene.problem.stated = file.contains("domain") || file.contains("body");
+    scene.problem.general = file.contains("domain") || file.contains("body");
     // What expressions depend on comes first.
     const auto is_first = [](std::string_view section) {
       return section == constants_section || section == "model";
@@ -180,7 +180,7 @@ private:
     for (const auto& [key, entry] : *node.as_table()) {
       const std::string name(key.str());
       const std::string at = origin.at(key.source());
-      if (!scene.problem.stated && (constants || find_entry_kind(kind)->scope == Scope::stated)) {
+      if (!scene.problem.general && (constants || find_entry_kind(kind)->scope == Scope::general)) {
         throw InputError("section " + in_quotes(kind) + " makes no sense in a scene of a pump",
                          kind + "." + name, "scenes with [domain] or [body.NAME]", at);
       }

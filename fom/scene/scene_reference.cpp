@@ -41,7 +41,7 @@ std::string row(const SceneKey& key) {
   const bool entry = static_cast<bool>(entry_of(key.path));
   const char* scope = key.scope == Scope::any || entry ? ""
                       : key.scope == Scope::pump       ? "(pump) "
-                                                       : "(stated) ";
+                                                       : "(general) ";
   return "| `" + key.leaf() + "`" + (key.shapes_state ? "" : " *") + " | " + cell(allowed_text(key)) + " | " +
          cell(default_cell(key)) + " | " + scope + cell(key.help + planned_text(key)) + " |\n";
 }
@@ -73,7 +73,7 @@ std::string scene_reference() {
       "checkpoint.\n";
   page +=
       "- Keys marked (pump) belong to scenes of a pump, whose geometry is a profile or meshes; keys marked "
-      "(stated) "
+      "(general) "
       "to scenes with\n  `[domain]` or `[body.NAME]`, which state any other plane or axisymmetric problem.\n"
       "- Expressions are arithmetic in `x`, `y` (plane) or `r`, `z` (axisymmetric) in mm, `t` in s, `pi`, "
       "the\n"
@@ -91,7 +91,7 @@ std::string scene_reference() {
     }
     page += row(key);
   }
-  page += "\n## [constants]\n\nNumbers that expressions use by name: `U = 20.0`. Stated scenes only.\n";
+  page += "\n## [constants]\n\nNumbers that expressions use by name: `U = 20.0`. General problems only.\n";
   for (const EntryKind& kind : entry_kinds()) {
     page += "\n## [" + kind.kind + ".NAME]\n\n" + kind.help + "\n" + table_head;
     for (const SceneKey& key : entry_keys(kind.kind, "NAME")) {

@@ -402,10 +402,10 @@ std::span<const SceneKey> scene_table() {
   static const std::vector<SceneKey> table = [] {
     std::vector<SceneKey> all;
     for (const auto& part :
-         {model_keys(), scoped(Scope::pump, geometry_keys()), scoped(Scope::stated, domain_keys()),
+         {model_keys(), scoped(Scope::pump, geometry_keys()), scoped(Scope::general, domain_keys()),
           fluid_keys(), scoped(Scope::pump, pump_keys()), scoped(Scope::pump, mesh_keys()), numerics_keys(),
-          scoped(Scope::pump, period_keys()), scoped(Scope::stated, duration_keys()),
-          scoped(Scope::stated, statistics_keys()), stabilisation_keys(),
+          scoped(Scope::pump, period_keys()), scoped(Scope::general, duration_keys()),
+          scoped(Scope::general, statistics_keys()), stabilisation_keys(),
           scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
       all.insert(all.end(), part.begin(), part.end());
     }

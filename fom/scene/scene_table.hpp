@@ -102,8 +102,8 @@ struct NameListKey {
 /// Which scenes have a key.
 enum class Scope {
   any,
-  pump,  ///< of a pump: geometry from a profile or meshes, an actuator
-  stated ///< with a domain and bodies of their own (Scene::problem)
+  pump,   ///< of a pump: geometry from a profile or meshes, an actuator
+  general ///< with a domain and bodies of their own (Scene::problem)
 };
 
 struct SceneKey {

@@ -24,7 +24,7 @@ std::string plain(double value) {
 } // namespace
 
 bool SceneKey::applies_to(const Scene& scene) const {
-  return scope == Scope::any || (scope == Scope::stated) == scene.problem.stated;
+  return scope == Scope::any || (scope == Scope::general) == scene.problem.general;
 }
 
 std::string SceneKey::section() const {

@@ -5,12 +5,12 @@
 namespace undula::fom {
 
 double time_step(const Scene& scene) {
-  if (scene.problem.stated) return scene.time.step;
+  if (scene.problem.general) return scene.time.step;
   return 1.0 / (scene.operating_point.frequency * scene.time.steps_per_period);
 }
 
 int last_step(const Scene& scene) {
-  if (scene.problem.stated) return static_cast<int>(std::lround(scene.time.end / scene.time.step));
+  if (scene.problem.general) return static_cast<int>(std::lround(scene.time.end / scene.time.step));
   return scene.time.periods * scene.time.steps_per_period;
 }
 

@@ -5,7 +5,7 @@
 
 namespace undula::fom {
 
-/// Time step, s: one period / steps_per_period, or the one a stated scene names.
+/// Time step, s: one period / steps_per_period, or the one a general problem names.
 double time_step(const Scene& scene);
 
 /// Number of the step that a run of the scene ends with.

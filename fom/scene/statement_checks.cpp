@@ -151,7 +151,7 @@ void check_refinements(const Scene& scene, const std::string& where) {
       throw InputError("a box of refinement is not one", std::to_string(box.box.size()) + " points",
                        "two points, the lowest and the highest corner", at);
     }
-    if (!scene.problem.stated && (scene.profile.empty() || scene.space == Space::thin_gap)) {
+    if (!scene.problem.general && (scene.profile.empty() || scene.space == Space::thin_gap)) {
       throw InputError("there is no mesh to refine in a box",
                        scene.profile.empty() ? "meshes from files" : "space = \"thin-gap\"",
                        "scenes with \"geometry.profile\" or [domain] and finite elements", at);
@@ -169,7 +169,7 @@ std::set<std::string> boundary_names(const ProblemStatement& problem) {
 
 void check_statement(const Scene& scene, const std::string& where) {
   if (scene.space == Space::thin_gap) {
-    throw InputError("the space does not go with a stated problem", "space = \"thin-gap\"",
+    throw InputError("the space does not go with a general problem", "space = \"thin-gap\"",
                      "\"plane\" or \"axisymmetric\"", where + ", section [model]");
   }
   check_domain(scene.problem, where);

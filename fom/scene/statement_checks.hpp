@@ -1,4 +1,4 @@
-// Checks of a stated problem that involve several keys.
+// Checks of a general problem that involve several keys.
 #pragma once
 
 #include <set>

@@ -8,6 +8,7 @@
 
 #include "fom/fom.hpp"
 #include "geometry/mesh/passage_flow.hpp"
+#include "geometry/mesh/polygons.hpp"
 #include "geometry/wave_pump/profile_scale.hpp"
 #include "geometry/wave_pump/wall_ray.hpp"
 #include "rom/base/error.hpp"
@@ -87,24 +88,10 @@ double radial_mean(double low, double high, double from, double to, const Functi
   return sum / weight;
 }
 
-bool in_polygon(const std::vector<Point<2>>& polygon, const Point<2>& x) {
-  bool odd = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Point<2>&a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-    if ((a.y() > x.y()) != (b.y() > x.y()) &&
-        x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      odd = !odd;
-  }
-  return odd;
-}
-
 double distance(const std::vector<Point<2>>& line, const Point<2>& x) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const Point<2> along = line[i] - line[i - 1];
-    const double s = std::clamp((x - line[i - 1]).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (x - line[i - 1] - s * along).norm());
-  }
+  for (std::size_t i = 1; i < line.size(); ++i)
+    least = std::min(least, distance_to_segment<2>(line[i - 1], line[i], x));
   return least;
 }
 
@@ -205,7 +192,9 @@ ThinGapLayout thin_gap_layout(const PumpProfile& profile, const SimplexMesh<2>& 
     return developed_friction(distance(profile.housing.points, x) + inwards);
   };
   const double channel_floor = around.wall(channel_radius * (1 - 1e-9), true).z;
-  const auto in_magnet = [&](const Point<2>& x) { return in_polygon(profile.magnet.points, x); };
+  const auto in_magnet = [sides = polygon_sides(profile.magnet.points)](const Point<2>& x) {
+    return inside_outline(sides, x);
+  };
   layout.inlet = passage_of(passage_flow(
       background, "inlet", [&](const Point<2>& x) { return x.y() > channel_floor && !in_magnet(x); },
       [&](const Point<2>& x) { return !in_magnet(x); }, friction));

@@ -11,6 +11,21 @@ double cross(const Point<2>& a, const Point<2>& b, const Point<2>& c) {
 
 } // namespace
 
+std::vector<Segment<2>> polygon_sides(const std::vector<Point<2>>& polygon) {
+  std::vector<Segment<2>> sides;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    sides.push_back({polygon[i], polygon[(i + 1) % polygon.size()]});
+  return sides;
+}
+
+bool inside_outline(std::span<const Segment<2>> sides, const Point<2>& x) {
+  bool odd = false;
+  for (const auto& [a, b] : sides)
+    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+      odd = !odd;
+  return odd;
+}
+
 double polygon_area(const std::vector<Point<2>>& polygon) {
   double twice = 0;
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) twice += cross(polygon[0], polygon[i], polygon[i + 1]);

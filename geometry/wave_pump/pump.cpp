@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/mesh/polygon_mesh.hpp"
+#include "geometry/mesh/polygons.hpp"
 
 namespace undula::geometry {
 
@@ -11,16 +12,6 @@ namespace {
 /// Bound of the angles in degrees: above the proven 20.7, with a margin to the 30 where refinement stops to
 /// end.
 constexpr double min_angle = 25;
-
-double twice_area(const std::vector<Point<2>>& points) {
-  double sum = 0;
-  for (std::size_t i = 0, n = points.size(); i < n; ++i) {
-    const auto& a = points[i];
-    const auto& b = points[(i + 1) % n];
-    sum += a.x() * b.y() - a.y() * b.x();
-  }
-  return sum;
-}
 
 } // namespace
 
@@ -64,7 +55,7 @@ SimplexMesh<2> pump_membrane(const PumpProfile& profile, const PumpMeshSizes& si
 SimplexMesh<2> pump_magnet(const PumpProfile& profile, const PumpMeshSizes& sizes) {
   TaggedPolygon polygon;
   polygon.points = profile.magnet.points;
-  if (twice_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
+  if (polygon_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
   polygon.tags.assign(polygon.points.size(), 0);
   polygon.names = {"magnet"};
   return mesh_polygon(

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/error.hpp"
 #include "training/campaign/recorded_run.hpp"
 #include "training/training.hpp"

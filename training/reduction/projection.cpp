@@ -1,6 +1,6 @@
 #include "training/reduction/projection.hpp"
 
-#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/error.hpp"
 #include "training/training.hpp"
 

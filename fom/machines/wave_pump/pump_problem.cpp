@@ -1,8 +1,5 @@
 #include "fom/machines/wave_pump/pump_problem.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include "fom/fom.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_time.hpp"
@@ -12,17 +9,6 @@
 #include "rom/base/error.hpp"
 
 namespace undula::fom {
-
-double holder_displacement(const Scene& scene, double t) {
-  const auto& point = scene.operating_point;
-  return point.stroke_scale * point.stroke * smooth_ramp(t, scene.time.ramp_periods / point.frequency) *
-         std::sin(2 * std::numbers::pi * point.frequency * t);
-}
-
-double outlet_pressure(const Scene& scene, double t) {
-  const auto& point = scene.operating_point;
-  return point.head * smooth_ramp(t, scene.time.ramp_periods / point.frequency);
-}
 
 PumpProfile scene_profile(const Scene& scene) {
   return scale_clearances(read_pump_profile(scene.profile), scene.clearance_scale, scene.rim_gap_scale);

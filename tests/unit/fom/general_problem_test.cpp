@@ -1,4 +1,6 @@
 // Scenes that state their domain, bodies and conditions: what becomes of them.
+#include "fom/scene/general_problem.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "fom/levels/scene_problem.hpp"
 #include "fom/scene/expression.hpp"
-#include "fom/scene/general_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
@@ -66,7 +67,7 @@ double area(const SimplexMesh<2>& mesh) {
   return sum;
 }
 
-TEST(StatedProblem, MeshesTheDomainWithoutItsHoles) {
+TEST(GeneralProblem, MeshesTheDomainWithoutItsHoles) {
   const auto problem = scene_problem(channel());
   // The circle of radius 0.2 cm as a polygon: four times ceil(pi / 2 * 2 / 0.5) = 28 corners.
   const double hole = 0.5 * 28 * 0.04 * std::sin(2 * std::numbers::pi / 28);
@@ -91,7 +92,7 @@ TEST(StatedProblem, MeshesTheDomainWithoutItsHoles) {
   EXPECT_FALSE(problem.pin_pressure);
 }
 
-TEST(StatedProblem, ConditionsAreInCgs) {
+TEST(GeneralProblem, ConditionsAreInCgs) {
   const auto problem = scene_problem(channel());
   const Point<2> u = problem.boundary.at("inlet").velocity({0.0, 0.5}, 7.0);
   EXPECT_NEAR(u[0], 3, 1e-14);
@@ -104,7 +105,7 @@ TEST(StatedProblem, ConditionsAreInCgs) {
   EXPECT_FALSE(problem.boundary.at("walls").velocity);
 }
 
-TEST(StatedProblem, BodiesAreHeldWhereTheySay) {
+TEST(GeneralProblem, BodiesAreHeldWhereTheySay) {
   const auto problem = scene_problem(channel());
   ASSERT_EQ(problem.solids.size(), 1u);
   const auto& block = problem.solids[0];
@@ -115,19 +116,19 @@ TEST(StatedProblem, BodiesAreHeldWhereTheySay) {
   EXPECT_NEAR(block.initial_velocity({2.1, 0.5}, 0)[1], 5, 1e-14);
 }
 
-TEST(StatedProblem, SlipsByTheLengthOfTheScene) {
+TEST(GeneralProblem, SlipsByTheLengthOfTheScene) {
   EXPECT_EQ(scene_problem(channel()).slip_length, 0);
   const auto slip = channel({"model.interface=\"slip\"", "contact.slip_length_mm=0.3"});
   EXPECT_NEAR(scene_problem(slip).slip_length, 0.03, 1e-17);
 }
 
-TEST(StatedProblem, TimeIsStatedInSeconds) {
+TEST(GeneralProblem, TimeIsStatedInSeconds) {
   EXPECT_EQ(time_step(channel()), 0.01);
   EXPECT_EQ(last_step(channel()), 11);
   EXPECT_EQ(last_step(channel({"time.end_s=0.1"})), 10);
 }
 
-TEST(StatedProblem, SpheresAreHalfDiscsOnTheAxis) {
+TEST(GeneralProblem, SpheresAreHalfDiscsOnTheAxis) {
   const auto problem = scene_problem(read_scene(UNDULA_SOURCE_DIR "/data/scenes/sphere_to_wall.toml"));
   double lowest = 1;
   for (const auto& x : problem.solids[0].mesh.points) lowest = std::min(lowest, x[0]);
@@ -135,7 +136,7 @@ TEST(StatedProblem, SpheresAreHalfDiscsOnTheAxis) {
   EXPECT_NEAR(area(problem.solids[0].mesh), 0.5 * std::numbers::pi * 0.25, 0.005);
 }
 
-TEST(StatedProblem, WhatCannotBeIsRefused) {
+TEST(GeneralProblem, WhatCannotBeIsRefused) {
   for (const char* setting :
        {"body.block.density_g_per_cm3=0", "body.block.held=x < 1", "domain.sides=[\"a\", \"b\", \"c\"]",
         "hole.pin.radius_mm=20", "boundary.outlet.kind=wall", "body.block.size=1", "body.blok.size_mm=1",
@@ -144,7 +145,7 @@ TEST(StatedProblem, WhatCannotBeIsRefused) {
     EXPECT_THROW(scene_problem(channel({setting})), InputError) << setting;
 }
 
-TEST(StatedProblem, TheResolvedSceneReadsBack) {
+TEST(GeneralProblem, TheResolvedSceneReadsBack) {
   const Scene scene = channel({"constants.U=0.1", "boundary.outlet.pressure_mmHg=1.25"});
   const Scene again = parse_scene(scene_to_toml(scene), "recorded", "/");
   EXPECT_EQ(scene_to_toml(again), scene_to_toml(scene));
