@@ -4,8 +4,7 @@
 #include <exception>
 #include <vector>
 
-#include "rom/curve/hq_curve.hpp"
-#include "rom/fixed_domain/model.hpp"
+#include "rom/rom.hpp"
 
 int main(int argc, char** argv) try {
   using namespace undula;

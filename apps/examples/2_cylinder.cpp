@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "fom/time/reaction.hpp"
+#include "fom/time/steady.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
 
 namespace {

@@ -36,13 +36,13 @@ void swing(const char* file) {
   std::printf("%d unknowns\n", level->unknowns());
 
   // 3. Which of the observed columns holds the height of the tip.
-  const auto columns = observation_columns(level->view(scene).rows);
+  const RowLayout rows = level->view(scene).rows;
+  const auto columns = observation_columns(rows);
   const auto tip = std::find(columns.begin(), columns.end(), "A_displacement_y_mm") - columns.begin();
 
   // 4. March from rest, and look at the tip after every step.
   double highest = 0, last = 0;
   State state = level->initial_state();
-  const RowLayout rows = level->view(scene).rows;
   march(*level, scene, state, timer, [&](const State& now, const Observation& seen) {
     last = observation_row(seen, rows)[static_cast<std::size_t>(tip)];
     highest = std::max(highest, last);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "fom/levels/scene_problem.hpp"
-#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/operating_point.hpp"
 
 namespace undula::fom {
 

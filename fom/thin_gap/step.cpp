@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "fom/thin_gap/step_terms.hpp"
 

@@ -6,36 +6,21 @@
 #include <vector>
 
 #include "fom/system/operators.hpp"
+#include "tests/verification/support/cook_membrane.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
 #include "tests/verification/support/names.hpp"
-#include "tests/verification/support/solid_meshes.hpp"
 
 namespace undula::verification {
 namespace {
 
-constexpr double shear_modulus = 80.1938, end_load = 100.0; // the customary data, in any consistent units
-
-/// Rise of the upper right corner: the tapered panel (0,0), (48,44), (48,60), (0,44), clamped on the left,
-/// sheared by a uniform traction on the right, n x n quadrilaterals.
+/// Rise of the upper right corner, n x n quadrilaterals.
 double corner_rise(int n, double poisson) {
-  SolidBody<2> body;
-  body.mesh = tensor_mesh(spaced(0, 1, n), spaced(0, 1, n));
-  for (auto& x : body.mesh.points) x = Point<2>(48 * x[0], 44 * x[0] + x[1] * (44 - 28 * x[0]));
-  body.properties = {1.0, 2 * (1 + poisson) * shear_modulus, poisson, 0.0};
-  body.imposed = [](const Point<2>& x) { return x[0] == 0; };
+  const auto body = cook_panel(tensor_mesh(spaced(0, 1, n), spaced(0, 1, n)), poisson);
   const auto disc = discretise(in_vacuo(Space::plane, body), CutOptions{});
   PhaseTimer timer;
   const auto operators = build_operators(disc, PETSC_COMM_SELF, timer);
 
-  // Uniform traction on the quadratic edges: 1/6, 4/6, 1/6 of each edge's load.
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(disc.unknowns());
-  for (const auto& facet : body.mesh.boundary) {
-    if (facet.tag != 1) continue;
-    const auto &a = body.mesh.points[facet.points[0]], &b = body.mesh.points[facet.points[1]];
-    const double force = end_load * (b - a).norm() / 16;
-    for (const int corner : facet.points) load[disc.solid_unknown(0, corner, 1)] += force / 6;
-    load[disc.solid_unknown(0, node_at(disc, 0, 0.5 * (a + b)), 1)] += force * 4 / 6;
-  }
+  const Eigen::VectorXd load = cook_load(disc);
   const FreeUnknowns free(disc.is_constrained);
   Eigen::VectorXd reduced(free.size());
   for (int i = 0; i < free.size(); ++i) reduced[i] = load[free.natural[i]];

@@ -9,6 +9,7 @@
 
 #include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
+#include "tests/verification/support/cook_membrane.hpp"
 #include "tests/verification/support/eigenmodes.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/thin_gap_von_karman.hpp"
@@ -215,27 +216,14 @@ TEST(NeoHookeanTube, NeedsTheExactPressure) {
 
 // --- Near incompressibility
 
-/// Rise of the upper right corner of Cook's membrane, see solid_cook_test.cpp, at large deformations: dead
-/// load.
+/// Rise of the upper right corner of Cook's membrane, at large deformations: dead load.
 double cook_rise(SolidModel model, int n, double poisson) {
-  constexpr double shear_modulus = 80.1938, end_load = 100.0;
-  SolidBody<2> body;
-  body.mesh = box({0, 0}, {1, 1}, n, n);
-  for (auto& x : body.mesh.points) x = Point<2>(48 * x[0], 44 * x[0] + x[1] * (44 - 28 * x[0]));
-  body.properties = {1.0, 2 * (1 + poisson) * shear_modulus, poisson, 0.0};
+  auto body = cook_panel(box({0, 0}, {1, 1}, n, n), poisson);
   body.model = model;
-  body.imposed = [](const Point<2>& x) { return x[0] == 0; };
   const auto disc = discretise(in_vacuo(Space::plane, body), CutOptions{});
   PhaseTimer timer;
   const auto operators = build_operators(disc, PETSC_COMM_SELF, timer);
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(disc.unknowns());
-  for (const auto& facet : body.mesh.boundary) {
-    if (facet.tag != 1) continue;
-    const auto &a = body.mesh.points[facet.points[0]], &b = body.mesh.points[facet.points[1]];
-    const double force = end_load * (b - a).norm() / 16;
-    for (const int corner : facet.points) load[disc.solid_unknown(0, corner, 1)] += force / 6;
-    load[disc.solid_unknown(0, node_at(disc, 0, 0.5 * (a + b)), 1)] += force * 4 / 6;
-  }
+  const Eigen::VectorXd load = cook_load(disc);
   LinearSystem<2> system(disc, operators, 1, timer);
   system.assemble({0.0, 1.0, 0.0}, nullptr);
   Eigen::VectorXd d = Eigen::VectorXd::Zero(disc.unknowns());

@@ -1,0 +1,13 @@
+// The online side: head-flow curves from the file of a reduced model, in milliseconds. Needs Eigen and HDF5
+// only.
+//
+//   base/          what all rooms share: errors, units, timers, HDF5 files
+//   fixed_domain/  the reduced operators of a fixed fluid domain, and their periodic states
+//   curve/         heads in, points out, with an error for each
+//
+// Everything a program needs that asks a model: load_model, hq_curve, outside_training_box.
+#pragma once
+
+#include "rom/base/error.hpp"
+#include "rom/curve/hq_curve.hpp"
+#include "rom/fixed_domain/model.hpp"
