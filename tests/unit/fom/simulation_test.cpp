@@ -21,15 +21,6 @@ Scene coarse_scene(const std::string& clamp_mm) {
   return read_scene(std::string(UNDULA_SOURCE_DIR) + "/data/scenes/wave_pump_fixed.toml", overrides);
 }
 
-TEST(SmoothRamp, RisesFromZeroToOneWithoutKinks) {
-  EXPECT_EQ(smooth_ramp(0, 2), 0);
-  EXPECT_DOUBLE_EQ(smooth_ramp(1, 2), 0.5);
-  EXPECT_EQ(smooth_ramp(2, 2), 1);
-  EXPECT_EQ(smooth_ramp(3, 2), 1);
-  EXPECT_EQ(smooth_ramp(0.1, 0), 1);
-  EXPECT_LT(smooth_ramp(1e-3, 2), 1e-5);
-}
-
 /// A membrane that is all holder is incompressible, so what enters leaves, to solver precision.
 TEST(Simulation, MovesTheHolderAsTheSceneSaysAndKeepsTheVolume) {
   auto scene = coarse_scene("5.0");
