@@ -18,6 +18,7 @@
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
+#include "apps/input/reduced_model.hpp"
 #include "apps/input/scene_flow.hpp"
 #include "apps/mpi_session.hpp"
 #include "apps/output/gnuplot.hpp"
@@ -75,7 +76,7 @@ void hq_of_model(const HqCommandOptions& options) {
   if (!options.picture.empty()) {
     check_picture_name(options.picture);
   }
-  rom::Model model = rom::load_model(options.model);
+  rom::Model model = read_model(options.model);
   const std::vector<double> heads =
       options.heads.empty() ? even_heads(model.box.head_low_mmHg, model.box.head_high_mmHg, default_points)
                             : parse_heads(options.heads);
@@ -102,7 +103,7 @@ void hq_of_model(const HqCommandOptions& options) {
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
   warn_outside(model, *options.frequency_Hz, *options.stroke_mm, heads);
   for (const rom::HqPoint& point : points) {
-    if (!point.converged) {
+    if (!point.converged && std::isfinite(point.flow_l_per_min)) {
       spdlog::warn("no periodic state at {} mmHg: the flow is the mean of the last period", point.head_mmHg);
     }
   }
@@ -118,6 +119,7 @@ void hq_of_model(const HqCommandOptions& options) {
   if (!options.picture.empty()) {
     plot_hq_report(options.picture, report, model);
   }
+  require_flows(points);
 }
 
 /// The band of a curve. Curves of thin gaps need one rank each, so that every rank computes its own; those of
@@ -160,7 +162,7 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
   }
   std::optional<rom::Model> model;
   if (!options.beside.empty()) {
-    model = rom::load_model(options.beside);
+    model = read_model(options.beside);
   }
 
   // 2. The periodic state at every head, on a level prepared once.

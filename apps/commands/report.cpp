@@ -15,6 +15,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
 #include "apps/input/measured_curve.hpp"
+#include "apps/input/reduced_model.hpp"
 #include "apps/input/scene_flow.hpp"
 #include "apps/mpi_session.hpp"
 #include "apps/output/gnuplot.hpp"
@@ -91,14 +92,16 @@ LevelResult compute_scene(const ReportOptions& options, const std::string& file,
 
 LevelResult compute_model(const ReportOptions& options, const std::string& file,
                           std::span<const double> heads) {
-  const rom::Model model = rom::load_model(file);
+  const rom::Model model = read_model(file);
   const auto begin = std::chrono::steady_clock::now();
   LevelResult result;
   result.level = "reduced model";
   result.source = file;
   const auto& sizes = model.operators;
   result.unknowns = sizes.velocity_modes + sizes.pressure_modes + sizes.displacement_modes;
-  for (const auto& point : rom::hq_curve(model, options.frequency_Hz, options.stroke_mm, heads)) {
+  const auto points = rom::hq_curve(model, options.frequency_Hz, options.stroke_mm, heads);
+  require_flows(points);
+  for (const auto& point : points) {
     result.flow.push_back(point.flow_l_per_min);
   }
   result.seconds_per_point = seconds_since(begin) / static_cast<double>(heads.size());

@@ -14,6 +14,7 @@
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
+#include "apps/input/reduced_model.hpp"
 #include "apps/input/scene_flow.hpp"
 #include "apps/input/validation.hpp"
 #include "apps/mpi_session.hpp"
@@ -54,9 +55,9 @@ FlowAtHead flow_of_model(const rom::Model& model, double frequency_Hz, double st
   return [&model, frequency_Hz, stroke_mm](double head_mmHg) {
     rom::HqOptions options;
     options.estimate_errors = false;
-    return rom::hq_curve(model, frequency_Hz, stroke_mm, std::span(&head_mmHg, 1), options)
-        .front()
-        .flow_l_per_min;
+    const auto points = rom::hq_curve(model, frequency_Hz, stroke_mm, std::span(&head_mmHg, 1), options);
+    require_flows(points);
+    return points.front().flow_l_per_min;
   };
 }
 
@@ -142,7 +143,7 @@ void validate_model(const ValidateOptions& options) {
   }
 
   // 2. The model.
-  const rom::Model model = rom::load_model(options.model);
+  const rom::Model model = read_model(options.model);
   for (const std::string& line :
        rom::outside_training_box(model.box, *options.frequency_Hz, *options.stroke_mm, comparison.heads)) {
     spdlog::warn("{}", line);

@@ -128,7 +128,7 @@ void complete_record(RunRecord& record, const TimeSeries& series, int steps_per_
   record.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
+RunRecord periodic_run(PreparedScene& prepared, const Scene& scene, const AfterStep& after_step) {
   const auto begin = std::chrono::steady_clock::now();
   const auto& disc = prepared.disc;
   set_operating_point(prepared, scene);
@@ -137,7 +137,7 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
   record.point = scene.operating_point;
   TimeSeries series = empty_series();
   Sampler sampler{
-      scene.time.steps_per_period / scene.training.snapshots_per_period,
+      std::max(1, scene.time.steps_per_period / scene.training.snapshots_per_period),
       static_cast<std::size_t>(scene.training.snapshots_per_period * scene.training.sampled_periods),
       {}};
 
@@ -172,6 +172,7 @@ RunRecord periodic_run(PreparedScene& prepared, const Scene& scene) {
       const Eigen::VectorXd start_x = state.x[0], start_d = state.d[0];
       for (int k = 0; k < scene.time.steps_per_period; ++k) {
         stepper.advance(state);
+        if (after_step) after_step(prepared.operators.comm);
         append(series, observe(disc, prepared.operators, stepper, prepared.observation, state));
         sampler.take(state);
       }

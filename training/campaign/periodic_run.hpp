@@ -21,8 +21,9 @@ Eigen::VectorXd extrapolation_weights(const Eigen::MatrixXd& differences);
 /// in channels, squeeze films) are shortened by extrapolation over the last periods; the record's last
 /// periods are always plain time steps. Snapshots of the last scene.training.sampled_periods periods. A
 /// NumericsError ends in a record of state `failed`. Collective over the communicator of `prepared`; the
-/// record is complete on every rank.
-RunRecord periodic_run(PreparedScene& prepared, const Scene& scene);
+/// record is complete on every rank. `after_step` is called after every step on every rank; what it throws,
+/// other than a NumericsError, ends the run without a record.
+RunRecord periodic_run(PreparedScene& prepared, const Scene& scene, const AfterStep& after_step = {});
 
 /// What every run leaves in its record at its end: the cycle means of its series, wall seconds by phase and
 /// in total since `begin`.
