@@ -81,9 +81,10 @@ Seal check_seal(const std::filesystem::path& file) {
   if (in.bad())
     throw InputError("cannot read file", "an error of the disk", "a readable file", file.string());
   if (seal == seal_text(length, digest.value())) return Seal::intact;
+  const std::string words = seal.c_str(); // up to the first zero
   throw InputError("the file is damaged: it is not as it was written",
                    std::to_string(seal_size + length) + " bytes that do not fit their seal, " +
-                       std::string(seal.c_str(), std::min(seal.find('\n'), seal.size())),
+                       words.substr(0, words.find('\n')),
                    "an undamaged copy (truncated files and flipped bits break the seal)", file.string());
 }
 
