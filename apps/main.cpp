@@ -1,5 +1,5 @@
-// undula: head-flow curves of wave-membrane blood pumps. Exit codes: 0 done, 1 the numerics failed, 2 wrong
-// input.
+// undula: head-flow curves of wave-membrane blood pumps. Exit codes: 0 done, 1 the numerics or the
+// disk failed, or it was stopped, 2 wrong input.
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "apps/commands/commands.hpp"
+#include "apps/standard_streams.hpp"
 #include "rom/base/error.hpp"
 
 namespace {
@@ -22,6 +23,8 @@ int fail(const std::exception& error, int exit_code) {
 } // namespace
 
 int main(int argc, char** argv) {
+  undula::apps::open_standard_streams();
+
   // 1. Logs go to stderr: stdout is for results.
   spdlog::set_default_logger(spdlog::stderr_color_mt("undula"));
   spdlog::set_pattern("%^%l%$: %v");
@@ -39,11 +42,14 @@ int main(int argc, char** argv) {
 
   // 3. Run; every failure becomes one message and an exit code.
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::RuntimeError& told_elsewhere) {
-    return told_elsewhere.get_exit_code(); // rank 0 prints the message
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : wrong_input; // --help ends here with 0
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::RuntimeError& told_elsewhere) {
+      return told_elsewhere.get_exit_code(); // rank 0 prints the message
+    } catch (const CLI::ParseError& error) {
+      if (app.exit(error) != 0) return wrong_input; // --help ends here with 0
+    }
+    undula::apps::check_stdout();
   } catch (const undula::InputError& error) {
     return fail(error, wrong_input);
   } catch (const std::exception& error) {

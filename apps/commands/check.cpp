@@ -14,6 +14,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/levels/scene_problem.hpp"
+#include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
@@ -168,6 +169,9 @@ void check(const CheckOptions& options) {
   }
   // 1. Keys, types, ranges, contradictions.
   const Scene scene = read_scene(options.scene, options.overrides);
+  if (scene.training.stated) {
+    check_training(scene, options.scene);
+  }
 
   // 2. Profile and meshes, or what thin gaps derive from the profile.
   const CheckedGeometry geometry = check_geometry(scene);

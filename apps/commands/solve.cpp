@@ -16,7 +16,9 @@
 #include "apps/output/progress.hpp"
 #include "apps/output/solve_plots.hpp"
 #include "apps/output/text_table.hpp"
+#include "apps/stop_signal.hpp"
 #include "fom/levels/march.hpp"
+#include "fom/output/folder_lock.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/output/run_directory.hpp"
 #include "fom/output/series_statistics.hpp"
@@ -118,6 +120,28 @@ std::string json_text(const SolvedRun& run, const PhaseTimer& timer) {
   return result.dump(2) + "\n";
 }
 
+/// Keeps the state that a run stopped at, and says where. Where it cannot, why is told by what stopped the
+/// run.
+void keep_state(RunDirectory& output, const State& state) {
+  if (!output.has_row_of(state.step)) {
+    return;
+  }
+  try {
+    const auto file = output.save_state(state);
+    spdlog::error("stopped; the last good state, step {}, is kept in {}", state.step, file.string());
+  } catch (const std::exception&) {
+    spdlog::error(
+        "stopped; the last good state, step {}, could not be kept: --restart goes on from the newest "
+        "checkpoint before it",
+        state.step);
+  }
+}
+
+/// Steps from line to line of the log: a period, or a tenth of the run.
+long log_interval(const Scene& scene, int steps) {
+  return scene.problem.general ? std::max(1, steps / 10) : scene.time.steps_per_period;
+}
+
 void solve(const SolveOptions& options, MPI_Comm comm) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
@@ -130,7 +154,14 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   const ExistingRun existing = options.restart ? ExistingRun::go_on
                                : options.force ? ExistingRun::replace
                                                : ExistingRun::refuse;
-  on_root(comm, [&] { check_run_directory(folder, scene, existing); });
+  std::optional<FolderLock> lock; // on rank 0
+  on_root(comm, [&] {
+    lock.emplace(folder, "undula solve " + options.scene);
+    if (!lock->held()) {
+      spdlog::warn("{} is on a file system without locks: nothing keeps a second run out", folder);
+    }
+    check_run_directory(folder, scene, existing);
+  });
 
   // 2. Prepare what the scene's level needs: meshes, cut, operators, or coefficients.
   PhaseTimer timer;
@@ -142,6 +173,9 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   on_root(comm, [&] {
     const auto scope = timer.measure("output");
     output.emplace(folder, level->view(scene), scene, existing, ranks, state);
+    for (const std::string& message : output->damaged()) {
+      spdlog::warn("an older checkpoint is used: {}", message);
+    }
     if (options.restart) {
       spdlog::info("{} goes on from step {}", folder, state.step);
     }
@@ -149,12 +183,13 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   broadcast_state(comm, state);
   const int first_step = state.step;
 
-  // 4. March. Where the numerics fail, the last good state stays.
-  const int steps = last_step(scene) - first_step;
+  // 4. March. Where the numerics fail, the last good state stays; where a signal comes, the next one does.
+  const int last = last_step(scene), steps = last - first_step;
   try {
+    const StopSignal stop;
     std::optional<Progress> progress;
     if (rank == 0) {
-      progress.emplace("solve", std::max(steps, 0));
+      progress.emplace("solve", std::max(steps, 0), log_interval(scene, steps));
     }
     march(*level, scene, state, timer, [&](const State& now, const Observation& seen) {
       const auto scope = timer.measure("output");
@@ -162,11 +197,20 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
         output->record(now, seen);
         progress->update(now.step - first_step);
       });
+      const int signal = stop.agreed(comm);
+      if (signal == 0 || now.step == last) {
+        return;
+      }
+      std::string file;
+      on_root(comm, [&] { file = output->save_state(now).string(); });
+      const bool repeats = now.step % scene.time.factor_every == 0;
+      throw Stopped("stopped by " + signal_name(signal) + " after step " + std::to_string(now.step) + " of " +
+                    std::to_string(last) + "\n  kept in: " + file + "\n  go on with --restart" +
+                    (repeats ? "" : " (not bit for bit: time.factor_every > 1)"));
     });
   } catch (const NumericsError&) {
     if (rank == 0) {
-      spdlog::error("stopped; the last good state, step {}, is kept in {}", state.step,
-                    output->save_state(state).string());
+      keep_state(*output, state);
     }
     throw;
   }
@@ -200,7 +244,8 @@ void add_solve_command(CLI::App& app) {
   command->add_option("--output", options->output, "folder for everything the run writes; default NAME_run");
   CLI::Option* restart =
       command->add_flag("--restart", options->restart, "go on from the newest checkpoint in the folder");
-  command->add_flag("--force", options->force, "replace a run that is in the folder")->excludes(restart);
+  command->add_flag("--force", options->force, "remove the run that is in the folder and start anew")
+      ->excludes(restart);
   command->add_flag("--plot", options->plot, "draw pictures of the flow and the membrane into the folder");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("petsc", options->petsc, "options for PETSc, after --");

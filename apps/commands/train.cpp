@@ -13,11 +13,15 @@
 #include "apps/mpi_session.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
+#include "apps/stop_signal.hpp"
 #include "fom/output/provenance.hpp"
 #include "fom/output/root_rank.hpp"
+#include "fom/output/scene_difference.hpp"
+#include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/replaced_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
 #include "training/reduction/build_model.hpp"
@@ -31,6 +35,7 @@ struct TrainOptions {
   std::vector<std::string> overrides;
   std::string output;
   std::string campaign;
+  bool force = false;
   bool json = false;
   std::vector<std::string> petsc;
 };
@@ -105,6 +110,75 @@ nlohmann::ordered_json to_json(const TrainedModel& trained, const std::string& f
   return result;
 }
 
+/// Throws InputError unless the file is missing, or the model of the same scene, or a model that --force
+/// gives up.
+void check_target(const std::string& file, const Scene& scene, bool force) {
+  if (!std::filesystem::exists(file)) {
+    return;
+  }
+  std::string seen = "a file that is no reduced model";
+  try {
+    const rom::Model there = rom::load_model(file);
+    const auto entry = [&](const char* name) {
+      const auto found = there.provenance.find(name);
+      return found == there.provenance.end() ? std::string() : found->second;
+    };
+    const auto differences = differing_keys(entry("scene"), scene_to_toml(scene));
+    if (force || (differences.empty() && entry("scene_hash") == scene_hash(scene))) {
+      return;
+    }
+    seen = "a model of another scene; " + difference_text(differences);
+  } catch (const InputError& error) {
+    seen += std::string(": ") + error.what();
+  }
+  throw InputError("train does not replace what another scene or program made", seen,
+                   "another --output; for a model also --force", file);
+}
+
+/// Computes the points without a record. A signal ends the run at hand: throws Stopped, with the records
+/// stored.
+void compute_runs(const Scene& scene, std::span<const OperatingPoint> points, const CampaignStore& store,
+                  const std::string& folder, MPI_Comm comm) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const StopSignal stop;
+  bool stopped = false;
+  try {
+    std::optional<Progress> progress;
+    if (rank == 0) {
+      progress.emplace("train", static_cast<long>(points.size()));
+    }
+    const auto tell = [&](const RunRecord& run, std::size_t done, std::size_t total) {
+      if (progress) {
+        progress->update(static_cast<long>(done));
+      }
+      const std::string outcome =
+          run.state == RunState::periodic
+              ? "periodic after " + std::to_string(run.cycles.periods.size()) + " periods"
+              : run.reason;
+      spdlog::info("{}/{}  {}: {} ({} s)", done, total, point_text(run.point), outcome,
+                   decimals(run.seconds.at("total"), 1));
+    };
+    run_campaign(scene, points, store, comm, tell, [&](MPI_Comm group) {
+      if (const int signal = stop.agreed(group); signal != 0) {
+        throw Stopped(signal_name(signal));
+      }
+    });
+  } catch (const Stopped&) {
+    stopped = true;
+  }
+  // Groups of ranks may have been told at different times; here they meet.
+  int any_stopped = stopped ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &any_stopped, 1, MPI_INT, MPI_MAX, comm);
+  if (any_stopped != 0) {
+    const int signal = stop.agreed(comm);
+    throw Stopped("stopped by " + signal_name(signal) + " with " +
+                  std::to_string(points.size() - store.status(points).pending.size()) + " of " +
+                  std::to_string(points.size()) + " runs stored in " + folder +
+                  "\n  the same command goes on with the others");
+  }
+}
+
 void train(const TrainOptions& options, MPI_Comm comm) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
@@ -113,7 +187,12 @@ void train(const TrainOptions& options, MPI_Comm comm) {
   // 1. The scene, the plan, and the folder of the runs.
   const Scene scene = read_scene(options.scene, options.overrides);
   require_trainable(scene);
+  check_training(scene, scene.file.string());
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
+  on_root(comm, [&] {
+    check_target(output, scene, options.force);
+    remove_leftovers_of(output);
+  });
   const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
   const SamplingPlan plan = plan_samples(scene.training);
   std::vector<OperatingPoint> points = plan.training;
@@ -130,24 +209,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
   }
 
   // 2. The full-order runs that are not there yet.
-  {
-    std::optional<Progress> progress;
-    if (rank == 0) {
-      progress.emplace("train", static_cast<long>(points.size()));
-    }
-    run_campaign(scene, points, *store, comm, [&](const RunRecord& run, std::size_t done, std::size_t total) {
-      if (progress) {
-        progress->update(static_cast<long>(done));
-      }
-      const std::string outcome =
-          run.state == RunState::periodic
-              ? "periodic after " + std::to_string(run.cycles.periods.size()) + " periods"
-              : run.reason;
-      spdlog::info("{}/{}  {}: {} ({} s)", done, total, point_text(run.point), outcome,
-                   decimals(run.seconds.at("total"), 1));
-    });
-    MPI_Barrier(comm);
-  }
+  compute_runs(scene, points, *store, folder, comm);
 
   // 3. The reduced model, by one rank, unless another process still computes.
   on_root(comm, [&] {
@@ -190,6 +252,7 @@ void add_train_command(CLI::App& app) {
   command->add_option("--output", options->output, "model file to write; default NAME.h5");
   command->add_option("--campaign", options->campaign,
                       "folder of the full-order runs, resumed if it exists; default OUTPUT.runs");
+  command->add_flag("--force", options->force, "replace a model of another scene in OUTPUT");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("petsc", options->petsc, "options for PETSc, after --");
   command->footer(scene_keys_help());

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/input/reduced_model.hpp"
 #include "fom/levels/reduced_level.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -26,7 +27,7 @@ LevelSource read_model_source(const std::string& file, const std::vector<std::st
   rom::check_operating_point(*frequency_Hz, *stroke_mm, {});
   LevelSource source;
   source.file = file;
-  source.model = rom::load_model(file);
+  source.model = read_model(file);
   source.scene =
       scene_of_model(*source.model, std::filesystem::path(file).stem().string(), *frequency_Hz, *stroke_mm);
   return source;

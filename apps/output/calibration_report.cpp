@@ -218,10 +218,11 @@ std::string calibration_json(const CalibrationReport& report) {
 
 std::string calibrated_scene_text(const CalibrationReport& report, const std::filesystem::path& folder) {
   Scene scene = report.scene;
-  const auto start = std::filesystem::absolute(folder).lexically_normal();
+  // Links are followed first: the way back by ".." starts at the folder itself.
+  const auto start = std::filesystem::weakly_canonical(std::filesystem::absolute(folder));
   const auto relative = [&](std::filesystem::path& file) {
     if (!file.empty()) {
-      file = std::filesystem::absolute(file).lexically_normal().lexically_proximate(start);
+      file = std::filesystem::weakly_canonical(std::filesystem::absolute(file)).lexically_proximate(start);
     }
   };
   relative(scene.profile);

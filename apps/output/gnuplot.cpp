@@ -34,6 +34,25 @@ int run_gnuplot(const std::filesystem::path& folder, const std::string& setting,
   return WEXITSTATUS(status);
 }
 
+std::string first_line_of_script(const std::string& name) {
+  return "# " + name + ".png: draw it again by `gnuplot " + name + ".gp`";
+}
+
+/// Script and data of a picture are named after it, which the user may not think of.
+void refuse_files_of_others(const std::filesystem::path& picture) {
+  const std::string name = picture.stem().string();
+  const auto beside = [&](const char* ending) { return picture.parent_path() / (name + ending); };
+  std::error_code ignored;
+  const bool ours = std::filesystem::is_regular_file(beside(".gp"), ignored) &&
+                    read_text_file(beside(".gp")).starts_with(first_line_of_script(name));
+  for (const char* ending : {".gp", ".dat"}) {
+    if (!ours && std::filesystem::exists(beside(ending), ignored)) {
+      throw InputError("a picture brings its script and its data, and would replace a file of others",
+                       '"' + beside(ending).string() + '"', "another name of the picture", "--plot");
+    }
+  }
+}
+
 } // namespace
 
 std::string gnuplot_string(const std::string& text) {
@@ -53,6 +72,7 @@ void check_picture_name(const std::filesystem::path& picture) {
     throw InputError("the folder of the picture does not exist", '"' + picture.string() + '"',
                      "an existing folder", "--plot");
   }
+  refuse_files_of_others(picture);
 }
 
 bool draw_picture(const std::filesystem::path& picture, const std::string& data,
@@ -60,13 +80,14 @@ bool draw_picture(const std::filesystem::path& picture, const std::string& data,
   check_picture_name(picture);
   const std::filesystem::path full = std::filesystem::absolute(picture);
   const std::string name = full.stem().string();
-  const std::string script = "# " + name + ".png: draw it again by `gnuplot " + name + ".gp`\n" +
+  const std::string script = first_line_of_script(name) + "\n" +
                              "if (!exists('picture')) picture = " + gnuplot_string(name + ".png") + "\n" +
                              "data = " + gnuplot_string(name + ".dat") + "\n" +
                              "set terminal pngcairo noenhanced size 1000,700 font 'DejaVu Sans,13'\n" +
                              "set output picture\n" + commands;
-  replace_text_file(full.parent_path() / (name + ".dat"), data);
+  // The script first: it tells that the data are ours.
   replace_text_file(full.parent_path() / (name + ".gp"), script);
+  replace_text_file(full.parent_path() / (name + ".dat"), data);
 
   const std::string partial = name + ".png.tmp";
   const int status = run_gnuplot(full.parent_path(), "picture = " + gnuplot_string(partial), name + ".gp");

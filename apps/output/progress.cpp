@@ -1,5 +1,6 @@
 #include "apps/output/progress.hpp"
 
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,9 +9,10 @@
 
 namespace undula::apps {
 
-Progress::Progress(std::string label, long total)
+Progress::Progress(std::string label, long total, long log_every)
     : label_(std::move(label)),
       total_(total),
+      log_every_(log_every),
       on_terminal_(isatty(STDERR_FILENO) == 1),
       begin_(Clock::now()),
       last_(begin_) {}
@@ -23,7 +25,14 @@ Progress::~Progress() {
 
 void Progress::update(long done) {
   const auto now = Clock::now();
-  if (!on_terminal_ || (done < total_ && now - last_ < std::chrono::milliseconds(200))) {
+  if (!on_terminal_) {
+    if (log_every_ > 0 && done > 0 && done % log_every_ == 0) {
+      spdlog::info("{}",
+                   progress_line(label_, done, total_, std::chrono::duration<double>(now - begin_).count()));
+    }
+    return;
+  }
+  if (done < total_ && now - last_ < std::chrono::milliseconds(200)) {
     return;
   }
   last_ = now;

@@ -1,4 +1,4 @@
-// Progress with an estimate of the time left, on a terminal only.
+// Progress with an estimate of the time left: one line on a terminal, lines of the log elsewhere.
 #pragma once
 
 #include <chrono>
@@ -6,10 +6,11 @@
 
 namespace undula::apps {
 
-/// One line on stderr that is overwritten at most five times a second; silent where stderr is not a terminal.
+/// On a terminal one line on stderr that is overwritten at most five times a second. Elsewhere one line of
+/// the log whenever another `log_every` are finished; none for 0.
 class Progress {
 public:
-  Progress(std::string label, long total);
+  Progress(std::string label, long total, long log_every = 0);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress(); ///< ends the line
@@ -20,7 +21,7 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
   std::string label_;
-  long total_ = 0;
+  long total_ = 0, log_every_ = 0;
   bool on_terminal_ = false;
   bool drawn_ = false;
   Clock::time_point begin_;

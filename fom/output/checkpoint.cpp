@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <utility>
+#include <system_error>
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
@@ -10,45 +10,44 @@
 namespace undula::fom {
 namespace {
 
-constexpr const char* format = "undula checkpoint 1";
+constexpr const char* format = "undula checkpoint 2";
 constexpr std::string_view prefix = "checkpoint_", suffix = ".h5";
+constexpr std::size_t kept = 2;
 
-/// Step in the name of a checkpoint, -1 for other files.
-int step_of(const std::filesystem::path& file) {
-  const auto name = file.filename().string();
-  if (!name.starts_with(prefix) || !name.ends_with(suffix)) return -1;
+void remove_old(const std::filesystem::path& folder, int newest_step) {
+  std::size_t seen = 0;
+  for (const auto& one : stored_checkpoints(folder))
+    // Later ones belong to a run that was set back to an earlier checkpoint.
+    if (one.step > newest_step || ++seen > kept) std::filesystem::remove(one.file);
+}
+
+} // namespace
+
+int checkpoint_step(std::string_view name) {
+  if (!name.starts_with(prefix) || !name.ends_with(suffix) || name.size() <= prefix.size() + suffix.size())
+    return -1;
   int step = -1;
   const char* end = name.data() + name.size() - suffix.size();
   const auto parsed = std::from_chars(name.data() + prefix.size(), end, step);
   return parsed.ec == std::errc() && parsed.ptr == end ? step : -1;
 }
 
-/// Checkpoints of a folder by rising step.
-std::vector<std::pair<int, std::filesystem::path>> checkpoints_in(const std::filesystem::path& folder) {
-  std::vector<std::pair<int, std::filesystem::path>> found;
-  if (!std::filesystem::is_directory(folder)) return found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (const int step = step_of(entry.path()); step >= 0) found.emplace_back(step, entry.path());
-  std::sort(found.begin(), found.end());
+std::vector<StoredCheckpoint> stored_checkpoints(const std::filesystem::path& folder) {
+  std::vector<StoredCheckpoint> found;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (const int step = checkpoint_step(entry.path().filename().string()); step >= 0)
+      found.push_back({step, entry.path()});
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.step > b.step; });
   return found;
 }
 
-void remove_old(const std::filesystem::path& folder, int newest_step) {
-  auto found = checkpoints_in(folder);
-  // Later ones belong to a run that was set back to an earlier checkpoint.
-  std::erase_if(
-      found, [&](const auto& one) { return one.first > newest_step && std::filesystem::remove(one.second); });
-  for (std::size_t k = 0; k + 2 < found.size(); ++k) std::filesystem::remove(found[k].second);
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const auto name = entry.path().filename().string();
-    if (name.starts_with(prefix) && name.ends_with(".partial")) std::filesystem::remove(entry.path());
-  }
-}
-
-} // namespace
-
 std::filesystem::path save_checkpoint(const Checkpoint& state, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw NumericsError("cannot create the folder of the checkpoints: " + failure.message(), folder.string(),
+                        "free space on the disk; a name that is not taken by a file");
   const auto target = folder / (std::string(prefix) + std::to_string(state.step) + std::string(suffix));
   auto file = Hdf5File::create(target);
   file.write_attribute("/", "format", format);
@@ -66,7 +65,7 @@ std::filesystem::path save_checkpoint(const Checkpoint& state, const std::filesy
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& path, const SceneStamp& scene) {
-  const auto file = Hdf5File::open_read(path);
+  const auto file = Hdf5File::open_sealed(path);
   const auto seen =
       file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
   if (seen != format) throw InputError("not a checkpoint", "format: " + seen, format, path.string());
@@ -77,6 +76,9 @@ Checkpoint load_checkpoint(const std::filesystem::path& path, const SceneStamp& 
                      "scene hash " + scene.hash + " (compare the dataset 'scene' with `undula check`)",
                      path.string());
   state.step = file.read_attribute<int>("/", "step");
+  if (state.step != checkpoint_step(path.filename().string()))
+    throw InputError("the checkpoint has the name of another step", "step " + std::to_string(state.step),
+                     "the step in its name", path.string());
   state.time = file.read_attribute<double>("/", "time");
   for (const auto& name : file.children("scalars"))
     state.scalars[name] = file.read<double>("scalars/" + name, {}).front();
@@ -87,9 +89,9 @@ Checkpoint load_checkpoint(const std::filesystem::path& path, const SceneStamp& 
 }
 
 std::optional<std::filesystem::path> newest_checkpoint(const std::filesystem::path& folder) {
-  const auto found = checkpoints_in(folder);
+  const auto found = stored_checkpoints(folder);
   if (found.empty()) return std::nullopt;
-  return found.back().second;
+  return found.front().file;
 }
 
 } // namespace undula::fom

@@ -166,7 +166,7 @@ std::map<int, std::filesystem::path> FieldWriter<dim>::step_files() const {
 
 template <int dim>
 XdmfStep FieldWriter<dim>::read_step(const std::filesystem::path& path) const {
-  const auto file = Hdf5File::open_read(path);
+  const auto file = Hdf5File::open_unchecked(path); // fields may be large, and no state is read from them
   XdmfStep entry{file.read_attribute<int>("/", "step"),
                  file.read_attribute<double>("/", "time"),
                  path.filename().string(),

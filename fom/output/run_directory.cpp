@@ -1,6 +1,12 @@
 #include "fom/output/run_directory.hpp"
 
+#include <algorithm>
+#include <limits>
+
+#include "fom/levels/scene_problem.hpp"
 #include "fom/output/provenance.hpp"
+#include "fom/output/run_files.hpp"
+#include "fom/output/scene_difference.hpp"
 #include "fom/output/series_statistics.hpp"
 #include "fom/output/state_file.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -13,20 +19,23 @@ namespace {
 
 constexpr std::string_view stamp_prefix = "# undula run of the scene with hash ";
 
-/// Hash and name of the scene whose run a folder holds.
+constexpr double seconds_between_checkpoints = 60;
+
+/// The scene whose run a folder holds.
 struct RunThere {
-  std::string hash, name;
+  std::string hash, name, text;
 };
 
 std::optional<RunThere> run_in(const std::filesystem::path& folder) {
-  const auto file = folder / "scene_resolved.toml";
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  const std::string text = read_text_file(file);
+  const auto file = folder / resolved_scene_name;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file))) return std::nullopt;
+  const std::string text = std::filesystem::is_regular_file(file) ? read_text_file(file) : "";
   if (!text.starts_with(stamp_prefix))
     throw InputError("the output folder holds a foreign scene", "no stamp in its first line",
                      "a folder that `undula solve` made, or a new one", file.string());
   RunThere there;
   there.hash = text.substr(stamp_prefix.size(), text.find('\n') - stamp_prefix.size());
+  there.text = text;
   // The rest may name files that have moved since, so it is not parsed as a scene.
   constexpr std::string_view key = "\nname = \"";
   if (const auto begin = text.find(key); begin != std::string::npos)
@@ -34,8 +43,32 @@ std::optional<RunThere> run_in(const std::filesystem::path& folder) {
   return there;
 }
 
-std::filesystem::path checkpoint_folder(const std::filesystem::path& folder) {
-  return folder / "checkpoints";
+/// Files that --force would have to take for its own, and could not know to be.
+void refuse_foreign_files(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "campaign.h5"))
+    throw InputError("the output folder is that of a campaign", "\"campaign.h5\"",
+                     "a folder that `undula solve` made, or a new one", folder.string());
+  const auto files = run_files(folder);
+  if (files.empty()) return;
+  throw InputError("the output folder holds files that no run of Undula can be shown to have written",
+                   "\"" + files.front().lexically_proximate(folder).string() + "\"" +
+                       (files.size() > 1 ? " and " + std::to_string(files.size() - 1) + " more" : "") +
+                       ", but no stamped " + resolved_scene_name,
+                   "another --output; or move these files away", folder.string());
+}
+
+/// The last step that a folder holds anything of.
+int last_step_in(const std::filesystem::path& folder) {
+  int last = 0;
+  const auto checkpoints = stored_checkpoints(checkpoint_folder(folder));
+  if (!checkpoints.empty()) last = checkpoints.front().step;
+  try {
+    const auto table = read_whole_rows(folder / "time_series.csv");
+    if (table.rows() > 0) last = std::max(last, table.steps.back());
+  } catch (const InputError&) {
+    // A missing or damaged table is told of where it is needed.
+  }
+  return last;
 }
 
 std::vector<std::string> probe_columns(const MembraneProbes& probes) {
@@ -45,32 +78,37 @@ std::vector<std::string> probe_columns(const MembraneProbes& probes) {
   return columns;
 }
 
-void remove_results(const std::filesystem::path& folder) {
-  // Checkpoints first: at no moment could a restart mix two runs.
-  std::filesystem::remove_all(checkpoint_folder(folder));
-  for (const char* name : {"cycle_means.csv", "envelope.csv", "statistics.csv", "timing.json"})
-    std::filesystem::remove(folder / name);
-}
-
 } // namespace
 
 void check_checkpoint_interval(const Scene& scene) {
-  if (scene.output.checkpoint_every % scene.time.factor_every == 0) return;
+  if (scene.output.checkpoint_every == automatic_checkpoints ||
+      scene.output.checkpoint_every % scene.time.factor_every == 0)
+    return;
   throw InputError("checkpoints do not fall on fresh factorisations, so a restart would not repeat the run",
                    "output.checkpoint_every = " + std::to_string(scene.output.checkpoint_every),
                    "a multiple of time.factor_every = " + std::to_string(scene.time.factor_every),
                    scene.file.string() + ", section [output]");
 }
 
+bool checkpoint_due(const Scene& scene, int step, int saved_step, double seconds) {
+  const int every = scene.output.checkpoint_every;
+  if (every != automatic_checkpoints) return every > 0 && step % every == 0;
+  if (step % scene.time.factor_every != 0) return false;
+  const int period = scene.problem.general ? 0 : scene.time.steps_per_period;
+  const bool new_period = period > 0 && step / period > saved_step / period;
+  return new_period || seconds >= seconds_between_checkpoints;
+}
+
 void check_run_directory(const std::filesystem::path& folder, const Scene& scene, ExistingRun existing) {
   if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
     throw InputError("the output folder is a file", folder.string(), "a folder, or a name not yet taken",
                      "--output");
-  if (existing == ExistingRun::replace) return;
   const auto there = run_in(folder);
-  if (!there) return;
+  if (!there) return refuse_foreign_files(folder);
+  if (existing == ExistingRun::replace) return;
   const std::string hash = scene_hash(scene);
-  const std::string seen = "scene \"" + there->name + "\" with hash " + there->hash;
+  std::string seen = "scene \"" + there->name + "\" with hash " + there->hash;
+  if (there->hash != hash) seen += "; " + difference_text(there->text, scene);
   if (existing == ExistingRun::go_on && there->hash != hash)
     throw InputError(
         "the output folder holds the run of another scene", seen,
@@ -81,6 +119,14 @@ void check_run_directory(const std::filesystem::path& folder, const Scene& scene
                      std::string(there->hash == hash ? "--restart to go on with it, " : "") +
                          "another --output, or --force to replace it",
                      folder.string());
+  const int last_there = last_step_in(folder), last_asked = last_step(scene);
+  if (last_there > last_asked)
+    throw InputError(
+        "the run in the output folder is longer than the scene asks for",
+        std::to_string(last_there) + " steps, " + exact_number(last_there * time_step(scene)) + " s",
+        "at least that many (" + std::string(scene.problem.general ? "time.end_s" : "time.periods") +
+            " asks for " + std::to_string(last_asked) + "); or a new folder, or --force to replace the run",
+        folder.string());
 }
 
 RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const Scene& scene,
@@ -98,16 +144,12 @@ RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const S
                      folder_.string());
 
   // 1. The state to go on from.
-  if (existing == ExistingRun::go_on) {
-    if (const auto file = newest_checkpoint(checkpoint_folder(folder_))) {
-      const auto checkpoint = load_checkpoint(*file, stamp_);
-      state = state_of(checkpoint, state, *file);
-      saved_step_ = state.step;
-    }
-  } else {
-    remove_results(folder_);
-  }
-  replace_text_file(folder_ / "scene_resolved.toml",
+  remove_unfinished(folder_);
+  if (existing == ExistingRun::go_on)
+    go_on_from_checkpoint(state);
+  else
+    remove_run(folder_);
+  replace_text_file(folder_ / resolved_scene_name,
                     std::string(stamp_prefix) + stamp_.hash + "\n" + stamp_.text);
 
   // 2. Tables and fields: from the start, or as they were at that state.
@@ -128,6 +170,40 @@ RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const S
   solid_writer_.emplace(writer("solids", view_.solids));
 }
 
+void RunDirectory::go_on_from_checkpoint(State& state) {
+  // Steps that the tables reach; a missing table starts anew.
+  int rows = std::numeric_limits<int>::max();
+  for (const char* name : {"time_series.csv", "membrane.csv"}) {
+    if (!std::filesystem::exists(folder_ / name)) continue;
+    const auto table = read_whole_rows(folder_ / name);
+    rows = std::min(rows, table.rows() > 0 ? table.steps.back() : 0);
+  }
+  for (const auto& [step, file] : stored_checkpoints(checkpoint_folder(folder_))) {
+    try {
+      if (step > rows)
+        throw InputError("the tables of the run end before the checkpoint",
+                         "rows up to step " + std::to_string(rows), "rows up to step " + std::to_string(step),
+                         file.string());
+      state = state_of(load_checkpoint(file, stamp_), state, file);
+      return saved(step, file);
+    } catch (const InputError& error) {
+      damaged_.emplace_back(error.what());
+    }
+  }
+  if (damaged_.empty()) return;
+  std::string reasons;
+  for (const auto& message : damaged_) reasons += "\n" + message;
+  throw InputError("none of the checkpoints can be used" + reasons,
+                   std::to_string(damaged_.size()) + " checkpoints",
+                   "one whole checkpoint; or --force to start again from rest", folder_.string());
+}
+
+void RunDirectory::saved(int step, std::filesystem::path file) {
+  saved_step_ = step;
+  saved_file_ = std::move(file);
+  saved_at_ = std::chrono::steady_clock::now();
+}
+
 void RunDirectory::record(const State& state, const Observation& seen) {
   series_->append(state.step, observation_row(seen, view_.rows));
   if (membrane_) {
@@ -145,16 +221,18 @@ void RunDirectory::record(const State& state, const Observation& seen) {
     }
     solid_writer_->write(state.step, state.time, view_.solid_fields(state));
   }
-  if (due(scene_.output.checkpoint_every)) save_state(state);
+  const std::chrono::duration<double> since_saved = std::chrono::steady_clock::now() - saved_at_;
+  if (checkpoint_due(scene_, state.step, saved_step_, since_saved.count())) save_state(state);
   if (view_.rows.pump && due(scene_.time.steps_per_period)) write_summaries();
 }
 
 std::filesystem::path RunDirectory::save_state(const State& state) {
-  const auto folder = checkpoint_folder(folder_);
-  if (state.step == saved_step_) return *newest_checkpoint(folder);
-  const auto file = save_checkpoint(checkpoint_of(state, stamp_, provenance_), folder);
-  saved_step_ = state.step;
-  return file;
+  if (state.step == saved_step_ && !saved_file_.empty()) return saved_file_;
+  // A checkpoint relies on the rows up to its step: they reach the disk first.
+  series_->sync();
+  if (membrane_) membrane_->sync();
+  saved(state.step, save_checkpoint(checkpoint_of(state, stamp_, provenance_), checkpoint_folder(folder_)));
+  return saved_file_;
 }
 
 void RunDirectory::write_summaries() const {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <set>
 #include <string_view>
 
 #include "rom/base/error.hpp"
-#include "rom/base/text_file.hpp"
 
 namespace undula::fom {
 namespace {
@@ -49,52 +49,75 @@ void check_columns(const std::vector<std::string>& columns, const std::filesyste
                      "different, non-empty names without commas and quotes", file.string());
 }
 
-} // namespace
-
-TimeSeries read_time_series(const std::filesystem::path& file) {
+/// `table` gets the rows before the first damaged one; returns the error that tells of that one, if any.
+std::optional<InputError> read_rows(const std::filesystem::path& file, TimeSeries& table) {
   const std::string text = read_text_file(file);
   std::string_view rest = text;
-  TimeSeries table;
   for (int line_number = 1;; ++line_number) {
     const auto end = rest.find('\n');
-    if (end == std::string_view::npos) break; // what follows was being written when the run was killed
+    if (end == std::string_view::npos)
+      return std::nullopt; // what follows was being written when the run was killed
     const auto line = rest.substr(0, end);
     rest.remove_prefix(end + 1);
     const auto fields = fields_of(line);
-    const auto fail = [&](const std::string& allowed) {
-      throw InputError("not a row of a time series", std::string(line.substr(0, 80)), allowed,
-                       file.string() + ", line " + std::to_string(line_number));
+    const auto error = [&](const std::string& allowed) {
+      return InputError("not a row of a time series", std::string(line.substr(0, 80)), allowed,
+                        file.string() + ", line " + std::to_string(line_number));
     };
     if (line_number == 1) {
-      if (fields[0] != "step" || fields.size() < 2) fail("a header that starts with \"step,\"");
+      if (fields[0] != "step" || fields.size() < 2) return error("a header that starts with \"step,\"");
       table.columns.assign(fields.begin() + 1, fields.end());
       continue;
     }
+    if (fields.size() != table.columns.size() + 1) return error("as many values as the header has columns");
     int step = 0;
-    if (fields.size() != table.columns.size() + 1) fail("as many values as the header has columns");
-    if (!parse(fields[0], step) || (!table.steps.empty() && step != table.steps.back() + 1))
-      fail("the number of the step after the last one");
+    if (!parse(fields[0], step) || step < 0 || (!table.steps.empty() && step != table.steps.back() + 1))
+      return error("the number of the step after the last one");
+    std::vector<double> values(table.columns.size());
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!parse(fields[k + 1], values[k])) return error("numbers");
     table.steps.push_back(step);
-    for (std::size_t k = 1; k < fields.size(); ++k) {
-      double value = 0;
-      if (!parse(fields[k], value)) fail("numbers");
-      table.values.push_back(value);
-    }
+    table.values.insert(table.values.end(), values.begin(), values.end());
   }
+}
+
+void require_header(const TimeSeries& table, const std::filesystem::path& file) {
   if (table.columns.empty())
     throw InputError("not a time series", "no header", "a first line \"step,...\"", file.string());
+}
+
+std::string whole_text(const TimeSeries& table) {
+  std::string text = joined(table.columns) + "\n";
+  const auto width = table.columns.size();
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    append_row(text, table.steps[row], {table.values.data() + row * width, width});
+  return text;
+}
+
+/// Opens the file for further rows once it holds those of the table.
+AppendedFile write_and_open(const std::filesystem::path& file, const TimeSeries& table) {
+  replace_text_file(file, whole_text(table));
+  return AppendedFile(file);
+}
+
+} // namespace
+
+TimeSeries read_time_series(const std::filesystem::path& file) {
+  TimeSeries table;
+  if (const auto error = read_rows(file, table)) throw *error;
+  require_header(table, file);
+  return table;
+}
+
+TimeSeries read_whole_rows(const std::filesystem::path& file) {
+  TimeSeries table;
+  (void)read_rows(file, table);
+  require_header(table, file);
   return table;
 }
 
 TimeSeriesFile::TimeSeriesFile(std::filesystem::path file, TimeSeries table)
-    : file_(std::move(file)), table_(std::move(table)) {
-  std::string text = joined(table_.columns) + "\n";
-  const auto width = table_.columns.size();
-  for (std::size_t row = 0; row < table_.rows(); ++row)
-    append_row(text, table_.steps[row], {table_.values.data() + row * width, width});
-  replace_text_file(file_, text);
-  out_.open(file_, std::ios::binary | std::ios::app);
-}
+    : file_(std::move(file)), table_(std::move(table)), out_(write_and_open(file_, table_)) {}
 
 TimeSeriesFile TimeSeriesFile::start(const std::filesystem::path& file, std::vector<std::string> columns) {
   check_columns(columns, file);
@@ -104,7 +127,7 @@ TimeSeriesFile TimeSeriesFile::start(const std::filesystem::path& file, std::vec
 TimeSeriesFile TimeSeriesFile::go_on(const std::filesystem::path& file, std::vector<std::string> columns,
                                      int last_step) {
   if (!std::filesystem::exists(file)) return start(file, std::move(columns));
-  auto table = read_time_series(file);
+  auto table = read_whole_rows(file);
   if (table.columns != columns)
     throw InputError("the time series has other columns than this run", joined(table.columns),
                      joined(columns), file.string());
@@ -124,14 +147,11 @@ void TimeSeriesFile::append(int step, std::span<const double> values) {
                      "step " + std::to_string(step) + " with " + std::to_string(values.size()) + " values",
                      std::to_string(table_.columns.size()) + " values of the step after the last one",
                      file_.string());
-  table_.steps.push_back(step);
-  table_.values.insert(table_.values.end(), values.begin(), values.end());
   std::string row;
   append_row(row, step, values);
-  out_ << row << std::flush;
-  if (!out_)
-    throw NumericsError("cannot append to the time series", file_.string() + ", step " + std::to_string(step),
-                        "free space on the disk, then restart from the last checkpoint");
+  out_.append(row);
+  table_.steps.push_back(step);
+  table_.values.insert(table_.values.end(), values.begin(), values.end());
 }
 
 CycleMeans summarise_cycles(const TimeSeries& table, int steps_per_period) {

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "rom/base/text_file.hpp"
 
 namespace undula::fom {
 
@@ -23,20 +24,28 @@ struct TimeSeries {
 /// InputError, naming the line, for anything else that is not such a table.
 TimeSeries read_time_series(const std::filesystem::path& file);
 
-/// The same table in memory and in a CSV file ("step,<columns>"), flushed row by row. For one rank.
+/// The rows up to the first one that is damaged, as a machine that lost its power may leave them. Throws
+/// InputError if not even the header can be read.
+TimeSeries read_whole_rows(const std::filesystem::path& file);
+
+/// The same table in memory and in a CSV file ("step,<columns>"), handed over row by row. For one rank.
 class TimeSeriesFile {
 public:
   /// Starts an empty table in the place of an existing one.
   static TimeSeriesFile start(const std::filesystem::path& file, std::vector<std::string> columns);
 
-  /// Goes on after a checkpoint: keeps the rows up to `last_step` and drops later ones. A missing file starts
-  /// anew. Throws InputError for other columns or for a table that ends before `last_step`.
+  /// Goes on after a checkpoint: keeps the rows up to `last_step` and drops later ones, damaged ones
+  /// included. A missing file starts anew. Throws InputError for other columns or for a table whose whole
+  /// rows end before `last_step`.
   static TimeSeriesFile go_on(const std::filesystem::path& file, std::vector<std::string> columns,
                               int last_step);
 
   /// Appends the row of the next step. Throws InputError for a wrong number of values or a step that does not
   /// follow the last one, NumericsError when the disk is full.
   void append(int step, std::span<const double> values);
+
+  /// Brings all rows to the disk: before a checkpoint that relies on them.
+  void sync() { out_.sync(); }
 
   const TimeSeries& table() const { return table_; }
 
@@ -45,7 +54,7 @@ private:
 
   std::filesystem::path file_;
   TimeSeries table_;
-  std::ofstream out_;
+  AppendedFile out_;
 };
 
 /// One row per period and column: mean, least and greatest of the period's steps.

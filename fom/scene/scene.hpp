@@ -76,6 +76,7 @@ struct Tolerance {
 
 /// Box of a training campaign.
 struct TrainingPlan {
+  bool stated = false;                          ///< the scene has a key of it
   double frequency_low = 0, frequency_high = 0; ///< Hz
   double stroke_low = 0, stroke_high = 0;       ///< cm
   double head_low = 0, head_high = 0;           ///< dyn/cm^2
@@ -90,9 +91,12 @@ struct TrainingPlan {
   int ranks_per_run = 1;
 };
 
+/// OutputSettings::checkpoint_every: once per period of a pump, and about once a minute.
+inline constexpr int automatic_checkpoints = -1;
+
 struct OutputSettings {
-  int fields_every = 0;       ///< steps between field files, 0: none
-  int checkpoint_every = 0;   ///< steps between checkpoints, 0: none
+  int fields_every = 0;                         ///< steps between field files, 0: none
+  int checkpoint_every = automatic_checkpoints; ///< steps between checkpoints, 0: none
   double statistics_from = 0; ///< s, where the window of the statistics begins (Scene::problem.general)
 };
 

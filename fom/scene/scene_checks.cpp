@@ -120,6 +120,8 @@ void check_bounds(const char* quantity, double low, double high, const std::stri
   }
 }
 
+} // namespace
+
 void check_training(const Scene& scene, const std::string& where) {
   const TrainingPlan& plan = scene.training;
   check_bounds("frequency (Hz)", plan.frequency_low, plan.frequency_high, where);
@@ -140,8 +142,6 @@ void check_training(const Scene& scene, const std::string& where) {
   }
 }
 
-} // namespace
-
 void check_consistency(const Scene& scene, const std::string& where) {
   check_refinements(scene, where);
   if (scene.problem.general) {
@@ -155,7 +155,6 @@ void check_consistency(const Scene& scene, const std::string& where) {
   check_contact(scene, where);
   check_damping(scene, where);
   check_time(scene, where);
-  check_training(scene, where);
 }
 
 } // namespace undula::fom

@@ -128,6 +128,8 @@ public:
 
   /// Defaults for what was left out; refuses missing keys.
   void fill_defaults(const Origin& origin) {
+    scene.training.stated = std::any_of(
+        given_.begin(), given_.end(), [](const std::string& path) { return path.starts_with("training."); });
     for (const SceneKey& key : keys_of(scene)) {
       if (given_.contains(key.path)) {
         continue;
@@ -437,8 +439,9 @@ private:
 
   static std::filesystem::path existing_file(const SceneKey& key, const std::string& text,
                                              const Origin& origin, const std::string& where) {
-    const std::filesystem::path file = (origin.base / text).lexically_normal();
+    // As the file system resolves it: ".." behind a link to a folder is the parent of the folder itself.
     std::error_code ignored;
+    const std::filesystem::path file = std::filesystem::weakly_canonical(origin.base / text, ignored);
     if (text.empty() || !std::filesystem::is_regular_file(file, ignored)) {
       refuse_value(key, "names a file that does not exist", file.string(), where);
     }
@@ -481,7 +484,11 @@ Scene parse_scene(std::string_view text, const std::string& origin_name, const s
 }
 
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  const std::filesystem::path absolute = std::filesystem::absolute(file).lexically_normal();
+  // Links to folders are followed, a link to the file is not: its folder is that of the link.
+  const std::filesystem::path named = std::filesystem::absolute(file);
+  std::error_code ignored; // a folder that is not there is told of below
+  const std::filesystem::path absolute =
+      std::filesystem::weakly_canonical(named.parent_path(), ignored) / named.filename();
   Scene scene = parse_scene(file_text(file), file.string(), absolute.parent_path(), overrides);
   scene.file = absolute;
   return scene;

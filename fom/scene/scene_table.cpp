@@ -260,8 +260,11 @@ std::vector<SceneKey> numerics_keys() {
        RealKey{FIELD(contact.slip), cm_per_mm, from_to(0, 1e4), 0.0}},
       {"output.fields_every", "", "steps between field files; 0: none", leaves_state,
        IntegerKey{FIELD(output.fields_every), 0, many, 0}},
-      {"output.checkpoint_every", "", "steps between checkpoints; 0: none", leaves_state,
-       IntegerKey{FIELD(output.checkpoint_every), 0, many, 0}},
+      {"output.checkpoint_every", "",
+       "steps between checkpoints; 0: none; -1: at the end of every period of a pump, and a minute after the "
+       "last one",
+       leaves_state,
+       IntegerKey{FIELD(output.checkpoint_every), automatic_checkpoints, many, automatic_checkpoints}},
   };
 }
 

@@ -1,8 +1,5 @@
 #include "rom/base/hdf5_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <concepts>
@@ -11,6 +8,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_handle.hpp"
+#include "rom/base/seal.hpp"
 
 namespace undula {
 namespace {
@@ -59,7 +57,7 @@ std::string class_text(hid_t type) {
 
 [[noreturn]] void fail_write(const std::filesystem::path& file, const std::string& name) {
   throw NumericsError("cannot write '" + name + "': " + error_text(), file.string(),
-                      "free space on the disk; a name can be written only once");
+                      "a name that is not yet in the file; more memory");
 }
 
 // Reading any of the classes below as T must lose nothing.
@@ -100,15 +98,46 @@ Handle make_text_type(std::size_t length) {
   return type;
 }
 
-Handle make_dataset(hid_t id, const std::string& name, hid_t type, hid_t space) {
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(links, 1);
-  return {H5Dcreate2(id, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose};
+// Checksums need chunks. They are whole rows (slices of the first dimension), about a megabyte each.
+void add_checksum(hid_t settings, const Hdf5File::Shape& shape, std::size_t bytes_per_value) {
+  constexpr std::size_t aim = 1 << 20;
+  std::vector<hsize_t> chunk(shape.begin(), shape.end());
+  const auto row = std::accumulate(chunk.begin() + 1, chunk.end(), bytes_per_value, std::multiplies<>());
+  chunk[0] = std::clamp<hsize_t>(aim / row, 1, chunk[0]);
+  H5Pset_chunk(settings, static_cast<int>(chunk.size()), chunk.data());
+  H5Pset_fletcher32(settings);
 }
 
-// Text of fixed or variable length; `fetch` reads the stored value into memory of the given type.
-std::string fetch_text(hid_t type, hid_t space, const std::filesystem::path& file, const std::string& name,
-                       const std::function<herr_t(hid_t, void*)>& fetch) {
+Handle make_dataset(hid_t id, const std::string& name, hid_t type, hid_t space,
+                    const Hdf5File::Shape& shape) {
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Handle settings(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(settings, 0); // the same numbers make the same file
+  const bool empty = std::find(shape.begin(), shape.end(), std::size_t{0}) != shape.end();
+  if (!shape.empty() && !empty) add_checksum(settings, shape, H5Tget_size(type));
+  return {H5Dcreate2(id, name.c_str(), type, space, links, settings, H5P_DEFAULT), H5Dclose};
+}
+
+std::size_t file_size(hid_t any_object) {
+  const Handle file(H5Iget_file_id(any_object), H5Fclose);
+  hsize_t bytes = 0;
+  return file.valid() && H5Fget_filesize(file, &bytes) >= 0 ? bytes : 0;
+}
+
+// Before memory is asked for: the values have to be in the file, uncompressed as they are.
+void check_size(hid_t object, std::size_t count, std::size_t bytes_per_value,
+                const std::filesystem::path& file, const std::string& name) {
+  const auto size = file_size(object);
+  if (count <= size / std::max<std::size_t>(bytes_per_value, 1)) return;
+  throw InputError("'" + name + "' claims to be larger than the file",
+                   std::to_string(count) + " values of " + std::to_string(bytes_per_value) + " bytes",
+                   "an undamaged file; this one has " + std::to_string(size) + " bytes", file.string());
+}
+
+// Text of fixed or variable length in `object`; `fetch` reads the stored value into memory of the given type.
+std::string fetch_text(hid_t object, hid_t type, hid_t space, const std::filesystem::path& file,
+                       const std::string& name, const std::function<herr_t(hid_t, void*)>& fetch) {
   if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1)
     throw InputError("'" + name + "' has the wrong type", class_text(type), "one text", file.string());
   const auto check = [&](herr_t status) {
@@ -122,6 +151,7 @@ std::string fetch_text(hid_t type, hid_t space, const std::filesystem::path& fil
     H5free_memory(raw);
     return text;
   }
+  check_size(object, H5Tget_size(type), 1, file, name);
   std::string text(H5Tget_size(type), '\0');
   check(fetch(type, text.data()));
   text.erase(text.find_last_not_of('\0') + 1);
@@ -137,7 +167,7 @@ void write_numbers(hid_t id, const std::filesystem::path& file, const std::strin
                      "as many as the shape " + shape_text(shape) + " holds", file.string());
   const QuietErrors quiet;
   const Handle space = make_space(shape);
-  const Handle dataset = make_dataset(id, name, stored_type<T>(), space);
+  const Handle dataset = make_dataset(id, name, stored_type<T>(), space, shape);
   if (!dataset.valid()) fail_write(file, name);
   if (!values.empty() &&
       H5Dwrite(dataset, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
@@ -155,22 +185,31 @@ void put_attribute(hid_t id, const std::filesystem::path& file, const std::strin
   if (!attribute.valid() || H5Awrite(attribute, memory, value) < 0) fail_write(file, object + "@" + name);
 }
 
+void require_file(const std::filesystem::path& file) {
+  std::error_code failure;
+  if (std::filesystem::is_regular_file(file, failure)) return;
+  throw InputError("cannot open file",
+                   std::filesystem::exists(file, failure) ? "not a regular file" : "no such file",
+                   "an existing HDF5 file", file.string());
+}
+
 } // namespace
 
-Hdf5File::Hdf5File(std::int64_t id, std::filesystem::path target, std::filesystem::path temporary)
-    : id_(id), target_(std::move(target)), temporary_(std::move(temporary)) {}
+Hdf5File::Hdf5File(std::int64_t id, std::filesystem::path target) : id_(id), target_(std::move(target)) {}
 
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
     : id_(std::exchange(other.id_, -1)),
       target_(std::move(other.target_)),
-      temporary_(std::exchange(other.temporary_, {})) {}
+      written_(std::exchange(other.written_, std::nullopt)),
+      sealed_(other.sealed_) {}
 
 Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
   if (this == &other) return *this;
   close();
   id_ = std::exchange(other.id_, -1);
   target_ = std::move(other.target_);
-  temporary_ = std::exchange(other.temporary_, {});
+  written_ = std::exchange(other.written_, std::nullopt);
+  sealed_ = other.sealed_;
   return *this;
 }
 
@@ -181,65 +220,81 @@ void Hdf5File::close() noexcept {
     const QuietErrors quiet;
     H5Fclose(std::exchange(id_, -1));
   }
-  if (temporary_.empty()) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
-  temporary_.clear();
+  written_.reset();
 }
 
 Hdf5File Hdf5File::open_read(const std::filesystem::path& file) {
-  std::error_code failure;
-  if (!std::filesystem::is_regular_file(file, failure))
-    throw InputError("cannot open file",
-                     std::filesystem::exists(file, failure) ? "not a regular file" : "no such file",
-                     "an existing HDF5 file", file.string());
+  require_file(file);
+  const bool sealed = check_seal(file) == Seal::intact;
+  Hdf5File opened = open_unchecked(file);
+  opened.sealed_ = sealed;
+  return opened;
+}
+
+Hdf5File Hdf5File::open_sealed(const std::filesystem::path& file) {
+  require_file(file);
+  if (check_seal(file) == Seal::missing)
+    throw InputError("not a file of this version of Undula", "no seal in its first bytes",
+                     "an undamaged file (this one is truncated, foreign or of an older version)",
+                     file.string());
+  Hdf5File opened = open_unchecked(file);
+  opened.sealed_ = true;
+  return opened;
+}
+
+Hdf5File Hdf5File::open_unchecked(const std::filesystem::path& file) {
+  require_file(file);
   const QuietErrors quiet;
   const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
+    std::error_code failure;
     const auto size = std::filesystem::file_size(file, failure);
     throw InputError("not a readable HDF5 file", std::to_string(size) + " bytes: " + error_text(),
                      "a complete HDF5 file (this one is truncated, foreign or not readable)", file.string());
   }
-  return {id, file, {}};
+  return {id, file};
 }
 
 Hdf5File Hdf5File::create(const std::filesystem::path& target) {
+  // HDF5 builds the file in memory and never meets a full disk, after which it could not close its files.
   static std::atomic<int> counter = 0;
-  auto temporary = target;
-  temporary += "." + std::to_string(::getpid()) + "." + std::to_string(counter++) + ".partial";
+  constexpr std::size_t growth = 1 << 20;
+  ReplacedFile written(target);
   const QuietErrors quiet;
-  const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (id < 0)
-    throw InputError("cannot create file", error_text(), "a path in an existing, writable folder",
-                     target.string());
-  return {id, target, std::move(temporary)};
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_fapl_core(access, growth, 0);
+  H5Pset_userblock(creation, seal_size);
+  // HDF5 tells files in memory apart by their names.
+  const auto name = "undula file in memory " + std::to_string(counter++);
+  const hid_t id = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation, access);
+  if (id < 0) throw NumericsError("cannot start a file: " + error_text(), target.string(), "more memory");
+  Hdf5File file(id, target);
+  file.written_ = std::move(written);
+  return file;
 }
 
 void Hdf5File::commit() {
-  const auto fail = [this](const std::string& what) {
-    close();
-    throw NumericsError("cannot complete file: " + what, target_.string(),
-                        "free space on the disk, check permissions");
-  };
-  if (id_ < 0 || temporary_.empty()) fail("it is not open for writing");
+  if (id_ < 0 || !written_)
+    throw NumericsError("cannot complete file: it is not open for writing", target_.string(), "a new file");
+  std::vector<std::byte> image;
   {
     const QuietErrors quiet;
-    if (H5Fclose(std::exchange(id_, -1)) < 0) fail(error_text());
+    const bool flushed = H5Fflush(id_, H5F_SCOPE_LOCAL) >= 0;
+    const auto size = flushed ? H5Fget_file_image(id_, nullptr, 0) : -1;
+    if (size > 0) image.resize(static_cast<std::size_t>(size));
+    if (size <= 0 || H5Fget_file_image(id_, image.data(), image.size()) != size) {
+      const auto reason = error_text();
+      close();
+      throw NumericsError("cannot complete file: " + reason, target_.string(), "more memory");
+    }
+    H5Fclose(std::exchange(id_, -1));
   }
-  // Data first, then the name: a crash in between leaves the old target.
-  const int descriptor = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool on_disk = descriptor >= 0 && ::fsync(descriptor) == 0;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!on_disk) fail("fsync failed");
-  std::error_code failure;
-  std::filesystem::rename(temporary_, target_, failure);
-  if (failure) fail(failure.message());
-  temporary_.clear();
-  const auto folder = target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
-  const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return;
-  ::fsync(directory); // makes the rename itself durable; some file systems refuse, which harms nothing
-  ::close(directory);
+  // The image begins behind the user block.
+  ReplacedFile written = *std::exchange(written_, std::nullopt);
+  written.write(seal_of(image));
+  written.write(image);
+  written.commit();
 }
 
 void Hdf5File::write(const std::string& name, std::span<const double> values, const Shape& shape,
@@ -264,7 +319,7 @@ void Hdf5File::write_text(const std::string& name, std::string_view text) {
   const QuietErrors quiet;
   const Handle type = make_text_type(text.size());
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle dataset = make_dataset(id_, name, type, space);
+  const Handle dataset = make_dataset(id_, name, type, space, {});
   const char nothing = '\0';
   if (!dataset.valid() ||
       H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.empty() ? &nothing : text.data()) < 0)
@@ -333,8 +388,9 @@ std::vector<T> Hdf5File::read(const std::string& name) const {
   const Handle dataset = open_dataset(id_, target_, name);
   check_type<T>(Handle(H5Dget_type(dataset), H5Tclose), target_, name);
   const Handle space(H5Dget_space(dataset), H5Sclose);
-  const auto count = std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space));
-  std::vector<T> values(static_cast<std::size_t>(count));
+  const auto count = static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
+  check_size(dataset, count, H5Tget_size(Handle(H5Dget_type(dataset), H5Tclose)), target_, name);
+  std::vector<T> values(count);
   if (!values.empty() && H5Dread(dataset, memory_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw InputError("cannot read '" + name + "'", error_text(), "an undamaged file", target_.string());
   return values;
@@ -354,7 +410,7 @@ std::string Hdf5File::read_text(const std::string& name) const {
   const Handle dataset = open_dataset(id_, target_, name);
   const Handle type(H5Dget_type(dataset), H5Tclose);
   const Handle space(H5Dget_space(dataset), H5Sclose);
-  return fetch_text(type, space, target_, name, [&](hid_t memory, void* value) {
+  return fetch_text(dataset, type, space, target_, name, [&](hid_t memory, void* value) {
     return H5Dread(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, value);
   });
 }
@@ -371,7 +427,7 @@ T Hdf5File::read_attribute(const std::string& object, const std::string& name) c
   const Handle type(H5Aget_type(attribute), H5Tclose);
   const Handle space(H5Aget_space(attribute), H5Sclose);
   if constexpr (std::same_as<T, std::string>) {
-    return fetch_text(type, space, target_, full_name,
+    return fetch_text(attribute, type, space, target_, full_name,
                       [&](hid_t memory, void* value) { return H5Aread(attribute, memory, value); });
   } else {
     check_type<T>(type, target_, full_name);

@@ -5,29 +5,41 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "rom/base/replaced_file.hpp"
 
 namespace undula {
 
 /// One open HDF5 file. Names are paths inside it ("group/sub/field"); missing groups are created on writing.
 /// Arrays are row-major; the shape {} is a scalar.
 ///
-/// Errors: InputError for a file that cannot be opened (missing, truncated, foreign) or does not hold what is
-/// asked for (name, type, shape); NumericsError where writing fails (disk full, say). Both carry HDF5's own
-/// text.
+/// Files are checked twice: arrays carry HDF5's own checksum (Fletcher32), which every HDF5 program compares,
+/// and the whole file carries a seal (seal.hpp) in its user block, which open_read() compares before HDF5
+/// sees a byte.
+///
+/// Errors: InputError for a file that cannot be opened (missing, damaged, foreign) or does not hold what is
+/// asked for (name, type, shape); NumericsError where writing fails (disk full, say).
 class Hdf5File {
 public:
   using Shape = std::vector<std::size_t>;
 
-  /// Opens an existing file read-only.
+  /// Opens an existing file read-only. A file whose seal is broken is refused; one without a seal is opened,
+  /// see sealed().
   static Hdf5File open_read(const std::filesystem::path& file);
 
-  /// Starts a new file under a temporary name beside `target`. Only commit() puts it in the target's place,
-  /// in one step and after it has reached the disk; a file destroyed without commit leaves the target as it
-  /// was.
+  /// The same, and a file without a seal is refused before HDF5 sees it.
+  static Hdf5File open_sealed(const std::filesystem::path& file);
+
+  /// The same, without a look at the seal: for files of which only a little is read.
+  static Hdf5File open_unchecked(const std::filesystem::path& file);
+
+  /// Starts a new file in memory, and under a temporary name beside `target`. Only commit() puts it in the
+  /// target's place (ReplacedFile); a file destroyed without commit leaves the target as it was.
   static Hdf5File create(const std::filesystem::path& target);
 
   Hdf5File(Hdf5File&& other) noexcept;
@@ -36,9 +48,12 @@ public:
   Hdf5File& operator=(const Hdf5File&) = delete;
   ~Hdf5File();
 
-  /// Closes a created file, flushes it to disk and renames it to its target. Nothing may be written
+  /// Seals a created file, brings it to the disk and renames it to its target. Nothing may be written
   /// afterwards.
   void commit();
+
+  /// Whether the file was opened with a look at its seal, and has one.
+  bool sealed() const { return sealed_; }
 
   const std::filesystem::path& path() const { return target_; }
 
@@ -80,7 +95,8 @@ public:
   Shape extents(const std::string& name) const;
 
   /// All values of a dataset, row-major. T is double, int or std::int64_t; a dataset of another class (or of
-  /// wider numbers than T) is an InputError, so nothing is rounded or clipped on the way in.
+  /// wider numbers than T) is an InputError, so nothing is rounded or clipped on the way in; so is one that
+  /// claims more values than the file can hold.
   template <class T>
   std::vector<T> read(const std::string& name) const;
 
@@ -98,12 +114,13 @@ public:
   std::string unit(const std::string& name) const;
 
 private:
-  Hdf5File(std::int64_t id, std::filesystem::path target, std::filesystem::path temporary);
+  Hdf5File(std::int64_t id, std::filesystem::path target);
   void close() noexcept;
 
-  std::int64_t id_ = -1;            // hid_t of the file, -1 when closed
-  std::filesystem::path target_;    // name the user knows
-  std::filesystem::path temporary_; // empty when reading
+  std::int64_t id_ = -1;                // hid_t of the file, -1 when closed
+  std::filesystem::path target_;        // name the user knows
+  std::optional<ReplacedFile> written_; // none when reading
+  bool sealed_ = false;
 };
 
 } // namespace undula

@@ -3,35 +3,52 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "rom/base/error.hpp"
+#include "rom/base/replaced_file.hpp"
 
 namespace undula {
 
 void replace_text_file(const std::filesystem::path& file, std::string_view text) {
-  auto temporary = file;
-  temporary += "." + std::to_string(::getpid()) + ".partial";
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0)
-    throw InputError("cannot create file", std::strerror(errno), "a path in an existing, writable folder",
-                     file.string());
-  bool written = true;
-  while (written && !text.empty()) {
-    const auto count = ::write(descriptor, text.data(), text.size());
+  ReplacedFile replaced(file);
+  replaced.write(text);
+  replaced.commit();
+}
+
+AppendedFile::AppendedFile(std::filesystem::path file)
+    : file_(std::move(file)), descriptor_(::open(file_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC)) {
+  if (descriptor_ < 0)
+    throw InputError("cannot append to file", std::strerror(errno), "a writable file", file_.string());
+}
+
+AppendedFile::AppendedFile(AppendedFile&& other) noexcept
+    : file_(std::move(other.file_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+AppendedFile::~AppendedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void AppendedFile::append(std::string_view text) {
+  while (!text.empty()) {
+    const auto count = ::write(descriptor_, text.data(), text.size());
     if (count > 0) text.remove_prefix(static_cast<std::size_t>(count));
-    written = count > 0 || (count < 0 && errno == EINTR);
+    if (count < 0 && errno != EINTR) fail();
   }
-  written = written && ::fsync(descriptor) == 0;
-  written = ::close(descriptor) == 0 && written;
-  written = written && ::rename(temporary.c_str(), file.c_str()) == 0;
-  if (written) return;
-  const std::string reason = std::strerror(errno);
-  ::unlink(temporary.c_str());
-  throw NumericsError("cannot write file: " + reason, file.string(), "free space on the disk");
+}
+
+void AppendedFile::sync() {
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(); // EINVAL: pipes and the like know no disk
+}
+
+void AppendedFile::fail() const {
+  throw NumericsError("cannot append to file: " + std::string(std::strerror(errno)), file_.string(),
+                      "free space on the disk, then start again (`solve` with --restart)");
 }
 
 std::string read_text_file(const std::filesystem::path& file) {

@@ -65,6 +65,7 @@ struct Model {
   double error_safety = 0;
   double error_floor_l_per_min = 0;
   std::map<std::string, std::string> provenance; ///< scene text, version, commit, ranks, date
+  bool sealed = true; ///< false: read from a file of format 1, whose numbers nothing vouches for
 };
 
 /// Keeps the first modes of each field; no re-projection is needed (the operators are nested).
@@ -73,11 +74,12 @@ struct Model {
 Operators restrict_operators(const Operators& operators, int velocity_modes, int pressure_modes,
                              int displacement_modes);
 
-/// Reads a model file (HDF5). Throws InputError for a missing, truncated or foreign file, for operators of
-/// sizes that do not fit together and for numbers that are not finite.
+/// Reads a model file (HDF5). Throws InputError for a missing, damaged or foreign file, for operators of
+/// sizes that do not fit together, for numbers that are not finite, and for a box or an error estimate that
+/// cannot be one.
 Model load_model(const std::string& file);
 /// Writes a model file (under a temporary name, then renamed). The keys of the provenance must not contain
-/// '/'. Throws InputError for operators of sizes that do not fit together.
+/// '/'. Throws InputError for what load_model would refuse.
 void save_model(const Model& model, const std::string& file);
 
 } // namespace undula::rom

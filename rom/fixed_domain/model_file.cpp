@@ -1,5 +1,6 @@
 // The model file: kind, version, one dataset per operator with its unit, the reference runs, provenance.
 #include <cmath>
+#include <utility>
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
@@ -9,7 +10,9 @@ namespace undula::rom {
 namespace {
 
 constexpr const char* file_kind = "undula reduced model";
-constexpr int file_version = 1;
+constexpr int file_version = 2;
+constexpr int unsealed_version = 1; // the same without seal
+constexpr int most_modes = 100000;  // of a field; keeps sums and products of sizes far from overflow
 
 using Shape = Hdf5File::Shape;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -24,6 +27,7 @@ public:
   void operator()(const std::string& name, const Eigen::MatrixXd& matrix, Eigen::Index rows,
                   Eigen::Index columns, const std::string& unit) {
     check(name, matrix.rows() == rows && matrix.cols() == columns);
+    check_finite(name, matrix);
     const RowMajor values = matrix;
     file_.write(name, std::span(values.data(), extent(values.size())),
                 {extent(values.rows()), extent(values.cols())}, unit);
@@ -31,6 +35,7 @@ public:
   void operator()(const std::string& name, const Eigen::VectorXd& vector, Eigen::Index size,
                   const std::string& unit) {
     check(name, vector.size() == size);
+    check_finite(name, vector);
     file_.write(name, std::span(vector.data(), extent(vector.size())), {extent(vector.size())}, unit);
   }
   void operator()(const std::string& name, const std::vector<Eigen::MatrixXd>& tensor, Eigen::Index n,
@@ -40,6 +45,7 @@ public:
     values.reserve(extent(n * n * n));
     for (const auto& slice : tensor) {
       check(name, slice.rows() == n && slice.cols() == n);
+      check_finite(name, slice);
       const RowMajor rows = slice;
       values.insert(values.end(), rows.data(), rows.data() + rows.size());
     }
@@ -51,6 +57,12 @@ private:
     if (!fits)
       throw InputError("'" + name + "' does not fit the numbers of modes", "another size",
                        "the sizes stated in rom/fixed_domain/model.hpp", file_.path().string());
+  }
+  template <class Values>
+  void check_finite(const std::string& name, const Values& values) const {
+    if (!values.allFinite())
+      throw InputError("'" + name + "' holds a number that is not finite", "nan or inf", "finite numbers",
+                       file_.path().string());
   }
   Hdf5File& file_;
 };
@@ -162,27 +174,61 @@ std::vector<ReferencePoint> read_references(const Hdf5File& file) {
 
 int read_count(const Hdf5File& file, const std::string& object, const std::string& name, int least) {
   const int count = file.read_attribute<int>(object, name);
-  if (count < least)
-    throw InputError("'" + name + "' is too small", std::to_string(count),
-                     "at least " + std::to_string(least), file.path().string());
+  if (count < least || count > most_modes)
+    throw InputError("'" + name + "' is out of range", std::to_string(count),
+                     std::to_string(least) + " to " + std::to_string(most_modes), file.path().string());
   return count;
 }
 
-void check_kind(const Hdf5File& file) {
+/// What the sizes and the finiteness of the operators do not say.
+void check_meaning(const Model& model, const std::string& file) {
+  const auto refuse = [&](const std::string& what, const std::string& seen, const std::string& allowed) {
+    throw InputError("the model is not one that training makes: " + what, seen, allowed, file);
+  };
+  const auto number = [](double value) { return std::to_string(value); };
+  for (const auto& side : box_sides) {
+    const double low = model.box.*side.low, high = model.box.*side.high;
+    if (!std::isfinite(low) || !std::isfinite(high) || low > high)
+      refuse(std::string("box of training in ") + side.name,
+             number(low) + " to " + number(high) + " " + side.unit, "finite numbers, the lower one first");
+  }
+  if (model.box.frequency_low_Hz <= 0) // nothing is said of the other sides: heads may be negative
+    refuse("box of training in frequency", number(model.box.frequency_low_Hz) + " Hz", "> 0");
+  for (const auto& [name, value] :
+       {std::pair("safety", model.error_safety), std::pair("floor (l/min)", model.error_floor_l_per_min)})
+    if (!std::isfinite(value) || value < 0)
+      refuse(std::string("error estimate, ") + name, number(value), "a finite number >= 0");
+  for (const auto& reference : model.references) // an error relative to a fluid at rest is no number
+    for (const double value :
+         {reference.frequency_Hz, reference.stroke_mm, reference.head_mmHg, reference.flow_l_per_min})
+      if (!std::isfinite(value)) refuse("reference runs", number(value), "finite points and flows");
+  if (model.steps_per_period < 4 || model.steps_per_period > most_modes)
+    refuse("steps per period", std::to_string(model.steps_per_period), "4 to " + std::to_string(most_modes));
+}
+
+/// Returns the version of the format.
+int check_kind(const Hdf5File& file) {
   const auto kind =
       file.has_attribute("/", "kind") ? file.read_attribute<std::string>("/", "kind") : "another program's";
   if (kind != file_kind)
     throw InputError("not a reduced model", "a file of kind '" + kind + "'",
                      std::string("kind '") + file_kind + "'", file.path().string());
   const int version = file.read_attribute<int>("/", "format_version");
-  if (version != file_version)
+  if (version != file_version && version != unsealed_version)
     throw InputError("model file of another format version", std::to_string(version),
-                     std::to_string(file_version), file.path().string());
+                     std::to_string(unsealed_version) + " or " + std::to_string(file_version),
+                     file.path().string());
+  if (version == file_version && !file.sealed())
+    throw InputError("the model file has lost its seal", "a file that does not begin with one",
+                     "an undamaged copy; other programs may read model files but not write them",
+                     file.path().string());
+  return version;
 }
 
 } // namespace
 
 void save_model(const Model& model, const std::string& name) {
+  check_meaning(model, name);
   auto file = Hdf5File::create(name);
   file.write_attribute("/", "kind", file_kind);
   file.write_attribute("/", "format_version", file_version);
@@ -208,8 +254,8 @@ void save_model(const Model& model, const std::string& name) {
 
 Model load_model(const std::string& name) {
   const auto file = Hdf5File::open_read(name);
-  check_kind(file);
   Model model;
+  model.sealed = check_kind(file) != unsealed_version;
   auto& o = model.operators;
   o.velocity_modes = read_count(file, "operators", "velocity_modes", 1);
   o.supremizer_modes = read_count(file, "operators", "supremizer_modes", 0);
@@ -220,9 +266,6 @@ Model load_model(const std::string& name) {
                      "at most " + std::to_string(o.velocity_modes), name);
   visit_operators(Reader(file), o, read_count(file, "operators", "probes", 0));
   model.steps_per_period = file.read<int>("steps_per_period", {}).front();
-  if (model.steps_per_period < 4)
-    throw InputError("'steps_per_period' is too small", std::to_string(model.steps_per_period), "at least 4",
-                     name);
   for (const auto& side : box_sides) {
     const auto range = file.read<double>(std::string("training_box/") + side.name, {2});
     model.box.*side.low = range[0];
@@ -233,6 +276,7 @@ Model load_model(const std::string& name) {
   model.error_floor_l_per_min = file.read<double>("error_estimate/floor", {}).front();
   for (const auto& key : file.children("provenance"))
     model.provenance[key] = file.read_text("provenance/" + key);
+  check_meaning(model, name);
   return model;
 }
 

@@ -77,8 +77,8 @@ bool PeriodicSolver::newton(double stroke, double head, PeriodicState& state) {
       convection_.add_derivative(at.by_advector, in * harmonics_.extrapolated_synthesis(), product);
       out = in + resolvent_.velocity_response(product * harmonics_.analysis());
     };
-    state.residual = r.norm() > 0 ? relative() : 0.0;
-    for (int iteration = 0; state.residual > options_.tolerance; ++iteration) {
+    state.residual = r.norm() == 0 ? 0.0 : relative();
+    for (int iteration = 0; !(state.residual <= options_.tolerance); ++iteration) { // nan is no solution
       if (iteration == options_.newton_iterations || !std::isfinite(state.residual)) return false;
       convection_.derivatives(at.values, at.by_advector);
       // Newton's own error is about the square of the residual: the inner solve needs no more than that.
@@ -99,9 +99,10 @@ bool PeriodicSolver::newton(double stroke, double head, PeriodicState& state) {
       state.residual = relative();
     }
     const double tail = u.rightCols(std::min<Eigen::Index>(4, u.cols())).norm() / std::max(u.norm(), 1e-300);
-    if (harmonics_.complete() || !(tail > options_.tail_tolerance)) {
+    if (!std::isfinite(tail)) return false;
+    if (harmonics_.complete() || tail <= options_.tail_tolerance) {
       finish(linear_state, at.force, state);
-      return true;
+      return state.y.allFinite();
     }
     harmonics_ =
         Harmonics(steps_per_period_, harmonics_.harmonics() + std::max(4, harmonics_.harmonics() / 3));
@@ -137,6 +138,8 @@ PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::
   }
   state.mean_outflow = operators_.outflow.dot(state.velocity.col(0));
   state.mean_inflow = operators_.inflow.dot(state.velocity.col(0));
+  // A head beyond all reason overflows on the way to the flow.
+  if (!std::isfinite(state.mean_outflow) || !std::isfinite(state.mean_inflow)) state.converged = false;
   return state;
 }
 
@@ -150,6 +153,7 @@ void PeriodicSolver::march(const Drive& drive, PeriodicState& state) {
     means.push_back(record.mean_outflow);
     ++state.marched_periods;
     state.residual = record.change;
+    if (!std::isfinite(record.change)) break;
     state.converged = state.marched_periods > ramp_periods + 1 && record.change <= options_.march_tolerance;
   }
   const auto last = means.end() - std::min<std::ptrdiff_t>(options_.spread_periods, std::ssize(means));

@@ -10,6 +10,19 @@ namespace undula::training {
 
 namespace {
 
+/// A part of the ranks; also freed where a run ends with an exception.
+class Group {
+public:
+  Group(MPI_Comm world, int colour, int key) { MPI_Comm_split(world, colour, key, &comm_); }
+  Group(const Group&) = delete;
+  Group& operator=(const Group&) = delete;
+  ~Group() { MPI_Comm_free(&comm_); }
+  operator MPI_Comm() const { return comm_; }
+
+private:
+  MPI_Comm comm_ = MPI_COMM_NULL;
+};
+
 /// The next point this group may compute, or nothing. Asked on the group's root.
 struct NextPoint {
   std::optional<Claim> claim;
@@ -25,11 +38,10 @@ NextPoint claim_next(std::span<const OperatingPoint> plan, const CampaignStore& 
 } // namespace
 
 void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, const CampaignStore& store,
-                  MPI_Comm world, const CampaignProgress& progress) {
+                  MPI_Comm world, const CampaignProgress& progress, const AfterStep& after_step) {
   int world_rank = 0;
   MPI_Comm_rank(world, &world_rank);
-  MPI_Comm group = MPI_COMM_NULL;
-  MPI_Comm_split(world, world_rank / scene.training.ranks_per_run, world_rank, &group);
+  const Group group(world, world_rank / scene.training.ranks_per_run, world_rank);
   int rank = 0;
   MPI_Comm_rank(group, &rank);
 
@@ -43,13 +55,12 @@ void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, cons
     if (!level) level = std::make_unique<FiniteElementLevel>(scene, group, timer);
     Scene at_point = scene;
     at_point.operating_point = plan[static_cast<std::size_t>(next.index)];
-    const auto record = record_run(*level, at_point);
+    const auto record = record_run(*level, at_point, after_step);
     if (rank == 0) {
       store.store(*next.claim, record);
       if (progress) progress(record, plan.size() - store.status(plan).pending.size(), plan.size());
     }
   }
-  MPI_Comm_free(&group);
 }
 
 } // namespace undula::training

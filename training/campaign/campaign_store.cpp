@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "fom/output/scene_difference.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/text_file.hpp"
@@ -17,7 +18,7 @@
 namespace undula::training {
 namespace {
 
-constexpr const char* format = "undula campaign 1";
+constexpr const char* format = "undula campaign 2";
 constexpr const char* stamp_name = "campaign.h5";
 
 enum class Wait { no, yes };
@@ -51,18 +52,24 @@ void remove_partials(const std::filesystem::path& target) {
   }
 }
 
-bool same(const OperatingPoint& a, const OperatingPoint& b) {
-  return a.frequency == b.frequency && a.stroke == b.stroke && a.head == b.head;
+/// Which keys of the scenes of two campaigns differ, of those that may matter.
+std::string difference(const std::string& before, const std::string& now) {
+  auto keys = differing_keys(before, now);
+  std::erase_if(keys, [](const KeyDifference& one) {
+    return one.key == "name" || one.key.starts_with("output.") || one.key.starts_with("operating_point.");
+  });
+  return difference_text(keys);
 }
 
 void check_stamp(const std::filesystem::path& path, const SceneStamp& stamp) {
-  const auto file = Hdf5File::open_read(path);
+  const auto file = Hdf5File::open_sealed(path);
   const auto seen =
       file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
   if (seen != format) throw InputError("not a campaign", "format: " + seen, format, path.string());
   const auto hash = file.read_attribute<std::string>("/", "campaign_hash");
   if (hash != stamp.hash)
-    throw InputError("the folder holds the campaign of another scene", "campaign hash " + hash,
+    throw InputError("the folder holds the campaign of another scene",
+                     "campaign hash " + hash + "; " + difference(file.read_text("scene"), stamp.text),
                      "campaign hash " + stamp.hash + ", or another folder", path.string());
 }
 
@@ -136,13 +143,22 @@ bool CampaignStore::is_done(const OperatingPoint& point) const {
   return status(std::span(&point, 1)).pending.empty();
 }
 
+void CampaignStore::check_record(const std::filesystem::path& file, const OperatingPoint& point) const {
+  std::error_code gone;
+  const auto changed = std::filesystem::last_write_time(file, gone);
+  if (const auto known = checked_.find(file); !gone && known != checked_.end() && known->second == changed)
+    return;
+  check_run_record(file, stamp_.hash, point);
+  checked_[file] = changed;
+}
+
 CampaignStore::Status CampaignStore::status(std::span<const OperatingPoint> plan) const {
   Status result;
   for (const auto& point : plan) {
     const auto file = record_file(point);
     try {
       if (std::filesystem::exists(file)) {
-        check_run_record(file, stamp_.hash);
+        check_record(file, point);
         continue;
       }
     } catch (const InputError& error) {
@@ -168,7 +184,7 @@ std::optional<Claim> CampaignStore::try_claim(const OperatingPoint& point) const
 }
 
 void CampaignStore::store(const Claim& claim, const RunRecord& record) const {
-  if (!same(claim.point(), record.point))
+  if (!same_point(claim.point(), record.point))
     throw InputError("a record may be stored at its own point only",
                      record_file(record.point).filename().string(),
                      record_file(claim.point()).filename().string(), folder_.string());
@@ -178,7 +194,7 @@ void CampaignStore::store(const Claim& claim, const RunRecord& record) const {
 }
 
 RunRecord CampaignStore::load(const OperatingPoint& point) const {
-  return read_run_record(record_file(point), stamp_.hash);
+  return read_run_record(record_file(point), stamp_.hash, point);
 }
 
 } // namespace undula::training

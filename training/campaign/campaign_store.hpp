@@ -1,8 +1,11 @@
 // The full-order runs of a campaign on disk: one record per operating point, none lost, none computed twice.
 #pragma once
 
+#include <mpi.h>
+
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -16,6 +19,9 @@
 #include "training/training.hpp"
 
 namespace undula::training {
+
+/// Told after every step of a run on every rank, with the communicator of the ranks that share the run.
+using AfterStep = std::function<void(MPI_Comm)>;
 
 struct Snapshots {
   std::string unit;
@@ -62,7 +68,8 @@ private:
 class CampaignStore {
 public:
   /// Opens or creates the folder and removes what killed runs left behind. Throws InputError if the folder
-  /// belongs to another campaign (naming both hashes) or is not empty and no campaign.
+  /// belongs to another campaign (naming the keys that differ and both hashes) or is not empty and no
+  /// campaign.
   CampaignStore(const std::filesystem::path& folder, const SceneStamp& stamp);
 
   struct Status {
@@ -85,11 +92,14 @@ public:
 
 private:
   bool is_done(const OperatingPoint& point) const;
+  void check_record(const std::filesystem::path& file, const OperatingPoint& point) const;
   void check_or_create_stamp() const;
   void remove_leftovers() const;
 
   std::filesystem::path folder_;
   SceneStamp stamp_;
+  /// Records found whole, with the time of their last change: each is read through once.
+  mutable std::map<std::filesystem::path, std::filesystem::file_time_type> checked_;
 };
 
 } // namespace undula::training

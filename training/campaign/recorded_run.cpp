@@ -1,5 +1,6 @@
 #include "training/campaign/recorded_run.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <utility>
 
@@ -65,15 +66,18 @@ std::vector<int> displacement_unknowns(const Discretisation<2>& disc) {
   return unknowns;
 }
 
-RunRecord record_run(FiniteElementLevel& level, const Scene& scene) {
+RunRecord record_run(FiniteElementLevel& level, const Scene& scene, const AfterStep& after_step) {
   const auto& plan = scene.training;
   Sampler sampler{
-      scene.time.steps_per_period / plan.snapshots_per_period,
+      std::max(1, scene.time.steps_per_period / plan.snapshots_per_period),
       static_cast<std::size_t>(plan.snapshots_per_period) * static_cast<std::size_t>(plan.sampled_periods),
       {}};
+  const MPI_Comm comm = level.prepared().operators.comm;
   State state = level.initial_state();
-  PeriodicRun run = march_until_periodic(level, scene, state,
-                                         [&](const State& now, const Observation&) { sampler.take(now); });
+  PeriodicRun run = march_until_periodic(level, scene, state, [&](const State& now, const Observation&) {
+    if (after_step) after_step(comm);
+    sampler.take(now);
+  });
   RunRecord record;
   record.point = scene.operating_point;
   record.state = run.state;

@@ -1,15 +1,17 @@
 #include "training/campaign/run_record_file.hpp"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::training {
 namespace {
 
-constexpr const char* format = "undula run record 1";
+constexpr const char* format = "undula run record 2";
 
 constexpr std::array<std::pair<RunState, const char*>, 3> state_names{
     {{RunState::periodic, "periodic"},
@@ -28,8 +30,19 @@ RunState state_of(const std::string& seen, const std::filesystem::path& file) {
   throw InputError("unknown state of a run", seen, "periodic, not periodic, failed", file.string());
 }
 
-Hdf5File open_checked(const std::filesystem::path& path, const std::string& campaign_hash) {
-  auto file = Hdf5File::open_read(path);
+OperatingPoint read_point(const Hdf5File& file) {
+  const auto get = [&](const char* name) { return file.read<double>(name, {}).front(); };
+  return {get("point/frequency"), get("point/stroke"), get("point/head")};
+}
+
+std::string point_text(const OperatingPoint& point) {
+  return exact_number(point.frequency) + " Hz, " + exact_number(point.stroke) + " cm, " +
+         exact_number(point.head) + " dyn/cm^2";
+}
+
+Hdf5File open_checked(const std::filesystem::path& path, const std::string& campaign_hash,
+                      const OperatingPoint& point) {
+  auto file = Hdf5File::open_sealed(path);
   const auto seen =
       file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
   if (seen != format) throw InputError("not a run record", "format: " + seen, format, path.string());
@@ -37,6 +50,9 @@ Hdf5File open_checked(const std::filesystem::path& path, const std::string& camp
   if (hash != campaign_hash)
     throw InputError("the record belongs to another campaign", "campaign hash " + hash,
                      "campaign hash " + campaign_hash, path.string());
+  if (const auto there = read_point(file); !same_point(there, point))
+    throw InputError("the record is that of another point", point_text(there), point_text(point),
+                     path.string());
   return file;
 }
 
@@ -48,6 +64,10 @@ void check_shapes(const RunRecord& record, const std::filesystem::path& file) {
   for (const auto& [name, field] : record.snapshots)
     if (const auto columns = static_cast<std::size_t>(field.values.cols()); columns != record.times.size())
       fail("snapshots of " + name, columns, record.times.size());
+  for (const double time : record.times)
+    if (!std::isfinite(time))
+      throw InputError("run record with a time that is no number", std::to_string(time), "finite times",
+                       file.string());
   const auto& cycles = record.cycles;
   const auto count = cycles.columns.size() * cycles.periods.size();
   for (const auto* values : {&cycles.mean, &cycles.minimum, &cycles.maximum})
@@ -71,6 +91,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 } // namespace
+
+bool same_point(const OperatingPoint& a, const OperatingPoint& b) {
+  return a.frequency == b.frequency && a.stroke == b.stroke && a.head == b.head;
+}
 
 void write_run_record(const RunRecord& record, const std::string& campaign_hash,
                       const std::filesystem::path& target) {
@@ -106,11 +130,11 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
   file.commit();
 }
 
-RunRecord read_run_record(const std::filesystem::path& path, const std::string& campaign_hash) {
-  const auto file = open_checked(path, campaign_hash);
-  const auto get = [&](const std::string& name) { return file.read<double>(name, {}).front(); };
+RunRecord read_run_record(const std::filesystem::path& path, const std::string& campaign_hash,
+                          const OperatingPoint& point) {
+  const auto file = open_checked(path, campaign_hash, point);
   RunRecord record;
-  record.point = {get("point/frequency"), get("point/stroke"), get("point/head")};
+  record.point = point;
   record.state = state_of(file.read_attribute<std::string>("/", "state"), path);
   record.reason = file.read_text("reason");
   record.times = file.read<double>("times");
@@ -130,15 +154,17 @@ RunRecord read_run_record(const std::filesystem::path& path, const std::string& 
   record.cycles.mean = file.read<double>("cycles/mean");
   record.cycles.minimum = file.read<double>("cycles/minimum");
   record.cycles.maximum = file.read<double>("cycles/maximum");
-  for (const auto& phase : file.children("seconds")) record.seconds[phase] = get("seconds/" + phase);
+  for (const auto& phase : file.children("seconds"))
+    record.seconds[phase] = file.read<double>("seconds/" + phase, {}).front();
   check_shapes(record, path);
   return record;
 }
 
-void check_run_record(const std::filesystem::path& path, const std::string& campaign_hash) {
-  const auto file = open_checked(path, campaign_hash);
+void check_run_record(const std::filesystem::path& path, const std::string& campaign_hash,
+                      const OperatingPoint& point) {
+  const auto file = open_checked(path, campaign_hash, point);
   state_of(file.read_attribute<std::string>("/", "state"), path);
-  // HDF5 finds a truncated file on opening; what is asked for here is that nothing is missing.
+  // The seal vouches for the bytes; what is asked for here is that nothing is missing.
   for (const auto* name : {"reason", "point", "times", "snapshots", "cycles", "seconds"})
     if (!file.exists(name))
       throw InputError("incomplete run record", std::string("no '") + name + "'", "a whole record",

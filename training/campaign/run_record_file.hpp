@@ -12,10 +12,16 @@ namespace undula::training {
 void write_run_record(const RunRecord& record, const std::string& campaign_hash,
                       const std::filesystem::path& file);
 
-/// Throws InputError for a missing, truncated or foreign file, and for one of another campaign.
-RunRecord read_run_record(const std::filesystem::path& file, const std::string& campaign_hash);
+/// Throws InputError for a missing, damaged or foreign file, for one of another campaign and for a record of
+/// another point or whose shapes disagree.
+RunRecord read_run_record(const std::filesystem::path& file, const std::string& campaign_hash,
+                          const OperatingPoint& point);
 
-/// Checks everything but the numbers. Throws as read_run_record does.
-void check_run_record(const std::filesystem::path& file, const std::string& campaign_hash);
+/// Checks everything but the shapes of the snapshots. Throws as read_run_record does.
+void check_run_record(const std::filesystem::path& file, const std::string& campaign_hash,
+                      const OperatingPoint& point);
+
+/// Whether both are the same point, bit for bit.
+bool same_point(const OperatingPoint& a, const OperatingPoint& b);
 
 } // namespace undula::training

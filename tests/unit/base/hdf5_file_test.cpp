@@ -1,6 +1,7 @@
 #include "rom/base/hdf5_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -145,6 +146,86 @@ TEST_F(Hdf5FileTest, RefusesAFileTruncatedAnywhere) {
     put(folder_ / "part.h5", whole.substr(0, length));
     EXPECT_TRUE(contains(message([&] { Hdf5File::open_read(folder_ / "part.h5"); }), "truncated")) << length;
   }
+}
+
+TEST_F(Hdf5FileTest, EveryByteIsUnderTheSeal) {
+  auto out = Hdf5File::create(folder_ / "whole.h5");
+  out.write("a/b", std::vector<double>(40, 1.5), {40}, "cm");
+  out.write_attribute("/", "step", 3);
+  out.commit();
+  EXPECT_TRUE(Hdf5File::open_read(folder_ / "whole.h5").sealed());
+  const auto whole = bytes(folder_ / "whole.h5");
+  std::mt19937 random(11);
+  for (int k = 0; k < 300; ++k) {
+    auto part = whole;
+    const auto at =
+        k < 130 ? static_cast<std::size_t>(k) * 4 : random() % whole.size(); // the seal itself first
+    part[at] = static_cast<char>(part[at] ^ (1 << (random() % 8)));
+    put(folder_ / "flipped.h5", part);
+    EXPECT_THROW(Hdf5File::open_sealed(folder_ / "flipped.h5"), InputError) << at;
+    EXPECT_THROW(Hdf5File::open_read(folder_ / "flipped.h5"), InputError) << at;
+  }
+}
+
+TEST_F(Hdf5FileTest, OtherHdf5ProgramsFindAFlippedBitInAnArrayToo) {
+  auto out = Hdf5File::create(folder_ / "whole.h5");
+  out.write("a", std::vector<double>(1000, 1.5), {10, 100});
+  out.commit();
+  auto part = bytes(folder_ / "whole.h5");
+  const double value = 1.5;
+  const auto at = part.find(std::string(reinterpret_cast<const char*>(&value), sizeof value)) + 800;
+  part[at] = static_cast<char>(part[at] ^ 1);
+  put(folder_ / "flipped.h5", part);
+  const auto in = Hdf5File::open_unchecked(folder_ / "flipped.h5"); // as they read it: without our seal
+  EXPECT_THROW((void)in.read<double>("a"), InputError);
+}
+
+TEST_F(Hdf5FileTest, TheSameNumbersMakeTheSameBytes) {
+  for (const char* name : {"one.h5", "two.h5"}) {
+    auto out = Hdf5File::create(folder_ / name);
+    out.write("a/b", std::vector<double>(40, 1.5), {40}, "cm");
+    out.write_text("scene", "name = 1");
+    out.commit();
+  }
+  EXPECT_EQ(bytes(folder_ / "one.h5"), bytes(folder_ / "two.h5"));
+}
+
+TEST_F(Hdf5FileTest, AFullDiskIsOneErrorThatLeavesNothingBehind) {
+  put(folder_ / "target.h5", "old content");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{20000, 20000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int code = 1;
+    try {
+      auto file = Hdf5File::create(folder_ / "target.h5");
+      file.write("a", std::vector<double>(100000, 1.0));
+      file.commit();
+    } catch (const NumericsError& error) {
+      code = contains(error.what(), "cannot write file") && contains(error.what(), "free space") ? 0 : 2;
+    }
+    ::_exit(code);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(bytes(folder_ / "target.h5"), "old content");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(Hdf5FileTest, LeftoversOfTheDeadGoAndThoseOfTheLivingStay) {
+  const auto target = folder_ / "a.h5";
+  put(folder_ / "a.h5.4711.0.partial", "left by a kill");
+  put(folder_ / "b.h5.4711.0.partial", "of another file");
+  auto alive = Hdf5File::create(target);
+  remove_leftovers_of(target);
+  EXPECT_FALSE(fs::exists(folder_ / "a.h5.4711.0.partial"));
+  EXPECT_TRUE(fs::exists(folder_ / "b.h5.4711.0.partial"));
+  alive.write("a", std::vector<double>{1});
+  alive.commit();
+  EXPECT_EQ(Hdf5File::open_sealed(target).read<double>("a"), std::vector<double>{1});
 }
 
 TEST_F(Hdf5FileTest, LeavesTheTargetUntouchedUntilCommit) {

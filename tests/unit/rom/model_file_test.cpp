@@ -4,7 +4,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
@@ -118,13 +122,45 @@ TEST_F(ModelFileTest, RefusesTruncatedAndForeignFiles) {
 TEST_F(ModelFileTest, RefusesNumbersThatAreNotFiniteAndWrongSizes) {
   auto model = sample_model();
   model.operators.linear(2, 3) = std::numeric_limits<double>::quiet_NaN();
-  save_model(model, file_);
-  EXPECT_THROW(load_model(file_), InputError);
+  EXPECT_THROW(save_model(model, file_), InputError);
+  EXPECT_FALSE(fs::exists(file_));
   model = sample_model();
   model.operators.outflow.conservativeResize(5);
   fs::remove(file_);
   EXPECT_THROW(save_model(model, file_), InputError);
   EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(ModelFileTest, RefusesABoxAndAnErrorEstimateThatCannotBe) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::function<void(Model&)>> wrongs = {
+      [](Model& m) { std::swap(m.box.head_low_mmHg, m.box.head_high_mmHg); },
+      [](Model& m) { m.box.frequency_low_Hz = 0; },
+      [&](Model& m) { m.box.stroke_high_mm = nan; },
+      [](Model& m) { m.error_safety = -1; },
+      [&](Model& m) { m.error_safety = nan; },
+      [](Model& m) { m.error_floor_l_per_min = -0.1; },
+      [&](Model& m) { m.references[0].flow_l_per_min = nan; },
+      [](Model& m) { m.steps_per_period = 3; },
+      [](Model& m) { m.steps_per_period = 2000000000; }};
+  for (std::size_t k = 0; k < wrongs.size(); ++k) {
+    auto model = sample_model();
+    wrongs[k](model);
+    EXPECT_THROW(save_model(model, file_), InputError) << k;
+  }
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(ModelFileTest, AFileWithoutItsSealIsRefused) {
+  save_model(sample_model(), file_);
+  EXPECT_TRUE(load_model(file_).sealed);
+  std::ifstream in(file_, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), {}};
+  in.close();
+  std::ofstream(file_, std::ios::binary) << "X" + content.substr(1);
+  EXPECT_THROW(load_model(file_), InputError);
+  std::ofstream(file_, std::ios::binary) << content.substr(512);
+  EXPECT_THROW(load_model(file_), InputError);
 }
 
 TEST(RestrictOperators, EqualsProjectionOnFewerModes) {

@@ -158,5 +158,13 @@ TEST(Gmres, SolvesARandomSystem) {
   EXPECT_EQ(x, Eigen::MatrixXd::Zero(10, 3));
 }
 
+TEST(Periodic, AHeadBeyondAllReasonHasNoPeriodicState) {
+  const auto operators = synthetic_operators({4, 2, 2}, 0.1);
+  for (const double head : {1e300, std::numeric_limits<double>::infinity()}) {
+    PeriodicSolver solver(operators, 120, 48);
+    EXPECT_FALSE(solver.solve(0.05, head).converged) << head;
+  }
+}
+
 } // namespace
 } // namespace undula::rom
