@@ -6,15 +6,14 @@
 #include <string>
 #include <utility>
 
+#include "geometry/mesh/sized_segments.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::geometry {
 
 namespace {
 
-struct Segment {
-  Point<2> a, b;
-};
+using Segment = PlaneSegment;
 using Segments = std::vector<Segment>;
 
 Point<2> nearest_point(const Segment& segment, const Point<2>& x) {
@@ -74,6 +73,9 @@ struct Sides {
   Segments housing, stator, membrane, magnet;
 };
 
+/// More of them would be gaps of hundreds of thousands of cells.
+constexpr std::size_t most_bridges = 200000;
+
 void bridge(const Segments& line, const Segments& other, double widest, double spacing,
             std::vector<GapBridge>& bridges) {
   for (const auto& segment : line) {
@@ -82,6 +84,11 @@ void bridge(const Segments& line, const Segments& other, double widest, double s
       const Point<2> x = segment.a + (s / length) * (segment.b - segment.a);
       const GapBridge found{x, nearest_point(other, x)};
       if (found.width() < widest) bridges.push_back(found);
+      if (bridges.size() > most_bridges)
+        throw InputError("a gap of the pump is too narrow for so many elements across it",
+                         std::to_string(found.width()) + " cm wide at r = " + std::to_string(x.x()) +
+                             ", z = " + std::to_string(x.y()) + " cm",
+                         "fewer elements across gaps (mesh.gap_elements), or a wider gap", "mesh sizes");
       if (s >= length) break;
       // The width changes by no more than the way walked, so wide gaps are left in long steps.
       s = std::min(length, s + std::max(spacing * found.width(), found.width() - widest));
@@ -129,22 +136,18 @@ std::function<double(const Point<2>&)> pump_size_field(const PumpProfile& profil
                                                        const PumpMeshSizes& sizes) {
   check(sizes);
   // Bridges half an element apart: between two of them the field rises by growth / 4 of the size at most.
-  std::vector<std::pair<double, Segment>> sources; // size along a bridge, bridge
+  std::vector<SizedSegment> sources;
   for (const auto& gap :
        gap_bridges(profile, sizes.gap_elements * sizes.channel_size, 0.5 / sizes.gap_elements))
-    sources.emplace_back(gap.width() / sizes.gap_elements, Segment{gap.from, gap.to});
-  std::stable_sort(sources.begin(), sources.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+    sources.push_back({{gap.from, gap.to}, gap.width() / sizes.gap_elements, 0});
 
-  return
-      [sources = std::move(sources), growth = sizes.growth, largest = sizes.channel_size](const Point<2>& x) {
-        double size = largest;
-        for (const auto& [along, segment] : sources) {
-          if (along >= size) break; // sorted: the others ask for no less
-          size = std::min(size, along + growth * (nearest_point(segment, x) - x).norm());
-        }
-        return size;
-      };
+  return [gaps = SizedSegments(std::move(sources), sizes.growth),
+          largest = sizes.channel_size](const Point<2>& x) {
+    double size = largest;
+    int source = 0;
+    gaps.lower(x, size, source);
+    return size;
+  };
 }
 
 } // namespace undula::geometry
