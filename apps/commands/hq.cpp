@@ -52,6 +52,15 @@ struct HqCommandOptions {
   std::vector<std::string> petsc;
 };
 
+/// Runs of another operating point are not drawn.
+void warn_of_other_runs(const SceneCurve& runs, const std::string& file, double frequency_Hz,
+                        double stroke_mm) {
+  if (!same_setting(runs.frequency_Hz, frequency_Hz) || !same_setting(runs.stroke_mm, stroke_mm)) {
+    spdlog::warn("{} holds runs of another operating point, {} Hz, stroke {} mm, which are not drawn", file,
+                 shortest(runs.frequency_Hz), shortest(runs.stroke_mm));
+  }
+}
+
 void warn_outside(const rom::Model& model, double frequency_Hz, double stroke_mm,
                   std::span<const double> heads) {
   for (const std::string& line : rom::outside_training_box(model.box, frequency_Hz, stroke_mm, heads)) {
@@ -84,8 +93,13 @@ void hq_of_model(const HqCommandOptions& options) {
     measured = read_measured_curve(options.data);
   }
 
+  if (measured) {
+    warn_of_other_point(*measured, options.data, "the model", *options.frequency_Hz, *options.stroke_mm);
+  }
+
   if (!options.runs.empty()) {
     const SceneCurve runs = read_scene_curve(options.runs);
+    warn_of_other_runs(runs, options.runs, *options.frequency_Hz, *options.stroke_mm);
     for (std::size_t i = 0; i < runs.head_mmHg.size(); ++i) {
       rom::ReferencePoint run;
       run.frequency_Hz = runs.frequency_Hz;
@@ -155,8 +169,14 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
     measured = read_measured_curve(options.data);
   }
   std::optional<SceneCurve> other_runs;
+  if (measured) {
+    warn_of_other_point(*measured, options.data, "the scene", scene.operating_point.frequency,
+                        units::length_to_mm(scene.operating_point.stroke));
+  }
   if (!options.runs.empty()) {
     other_runs = read_scene_curve(options.runs);
+    warn_of_other_runs(*other_runs, options.runs, scene.operating_point.frequency,
+                       units::length_to_mm(scene.operating_point.stroke));
   }
   std::optional<rom::Model> model;
   if (!options.beside.empty()) {
@@ -230,9 +250,9 @@ void hq_of_scene(const HqCommandOptions& options, MPI_Comm comm) {
 }
 
 void hq(const HqCommandOptions& options) {
-  if (std::filesystem::path(options.model).extension() == ".toml") {
+  if (is_scene_file(options.model)) {
     run_parallel(options.petsc, [&](MPI_Comm comm) { hq_of_scene(options, comm); });
-  } else {
+  } else if (is_first_process()) {
     hq_of_model(options);
   }
 }

@@ -143,6 +143,7 @@ void report(const ReportOptions& options, MPI_Comm comm) {
     check_picture_name(options.picture);
   }
   const MeasuredCurve measured = read_measured_curve(options.data);
+  warn_of_other_point(measured, options.data, "the report", options.frequency_Hz, options.stroke_mm);
   std::vector<Variation> variations;
   for (const std::string& text : options.variations) {
     variations.push_back(parse_variation(text));
@@ -161,7 +162,7 @@ void report(const ReportOptions& options, MPI_Comm comm) {
   int model = -1, runs = -1;
   for (const std::string& file : options.files) {
     const auto extension = std::filesystem::path(file).extension();
-    if (extension == ".toml") {
+    if (is_scene_file(file)) {
       table.results.push_back(compute_scene(options, file, {}, table.head_mmHg, comm));
       for (const Variation& variation : variations) {
         const int finest = static_cast<int>(table.results.size() + variation.values.size()) - 1;

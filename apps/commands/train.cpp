@@ -16,6 +16,7 @@
 #include "fom/levels/scene_problem.hpp"
 #include "fom/output/provenance.hpp"
 #include "fom/output/root_rank.hpp"
+#include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
 #include "rom/base/error.hpp"
@@ -113,6 +114,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
   // 1. The scene, the plan, and the folder of the runs.
   const Scene scene = read_scene(options.scene, options.overrides);
   require_pump(scene, "undula train");
+  check_training(scene, scene.file.string());
   if (scene.space == Space::thin_gap) {
     throw InputError("a thin-gap scene needs no reduced model", "model.space = \"thin-gap\"",
                      "undula hq on the scene itself, which takes seconds; or a scene of finite elements",

@@ -141,6 +141,8 @@ void validate_model(const ValidateOptions& options) {
     throw CLI::RequiredError(options.frequency_Hz ? "--stroke" : "--frequency");
   }
 
+  warn_of_other_point(comparison.curve, options.data, "the model", *options.frequency_Hz, *options.stroke_mm);
+
   // 2. The model.
   const rom::Model model = rom::load_model(options.model);
   for (const std::string& line :
@@ -170,6 +172,9 @@ void validate_scene(const ValidateOptions& options, MPI_Comm comm) {
   const Comparison comparison = read_comparison(options);
   const Scene scene =
       read_scene_at(options.model, options.overrides, options.frequency_Hz, options.stroke_mm);
+
+  warn_of_other_point(comparison.curve, options.data, "the scene", scene.operating_point.frequency,
+                      units::length_to_mm(scene.operating_point.stroke));
 
   // 2. Meshes and operators, or coefficients, shared by all heads.
   PhaseTimer timer;
@@ -230,9 +235,9 @@ void add_validate_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("petsc", options->petsc, "of a scene: options for PETSc, after --");
   command->callback([options] {
-    if (std::filesystem::path(options->model).extension() == ".toml") {
+    if (is_scene_file(options->model)) {
       run_parallel(options->petsc, [&](MPI_Comm comm) { validate_scene(*options, comm); });
-    } else {
+    } else if (is_first_process()) {
       validate_model(*options);
     }
   });

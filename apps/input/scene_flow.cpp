@@ -1,12 +1,32 @@
 #include "apps/input/scene_flow.hpp"
 
+#include <spdlog/spdlog.h>
+
+#include <cctype>
+#include <filesystem>
+
 #include "apps/apps.hpp"
 #include "fom/levels/scene_problem.hpp"
+#include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::apps {
+
+bool is_scene_file(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) {
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return ending == ".toml";
+}
+
+void warn_of_profile(const Scene& scene) {
+  for (const std::string& sentence : profile_differences(scene)) {
+    spdlog::warn("{}", sentence);
+  }
+}
 
 Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
                     const std::optional<double>& frequency_Hz, const std::optional<double>& stroke_mm) {
@@ -18,6 +38,7 @@ Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
   }
   Scene scene = read_scene(file, overrides);
   require_pump(scene, "a head-flow curve");
+  warn_of_profile(scene);
   return scene;
 }
 

@@ -14,6 +14,12 @@
 
 namespace undula::apps {
 
+/// Whether a file is a scene, by its ending (.toml in any case), rather than a model.
+bool is_scene_file(const std::string& file);
+
+/// Logs what the profile of a scene states otherwise than the scene.
+void warn_of_profile(const Scene& scene);
+
 /// Reads a scene with `--set` overrides, then `--frequency` and `--stroke` where they are given.
 Scene read_scene_at(const std::string& file, std::vector<std::string> overrides,
                     const std::optional<double>& frequency_Hz, const std::optional<double>& stroke_mm);

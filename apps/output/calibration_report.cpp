@@ -218,10 +218,10 @@ std::string calibration_json(const CalibrationReport& report) {
 
 std::string calibrated_scene_text(const CalibrationReport& report, const std::filesystem::path& folder) {
   Scene scene = report.scene;
-  const auto start = std::filesystem::absolute(folder).lexically_normal();
+  const auto start = std::filesystem::weakly_canonical(folder);
   const auto relative = [&](std::filesystem::path& file) {
     if (!file.empty()) {
-      file = std::filesystem::absolute(file).lexically_normal().lexically_proximate(start);
+      file = std::filesystem::weakly_canonical(file).lexically_proximate(start);
     }
   };
   relative(scene.profile);
