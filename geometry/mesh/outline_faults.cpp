@@ -38,13 +38,13 @@ std::optional<OutlineFault> outline_fault(const std::vector<Point<2>>& corners, 
   if (auto fault = repeated_corner(corners)) return fault;
   const auto edges = closed_polygon(corners);
   const std::size_t n = edges.size();
-  std::optional<OutlineFault> crossing, narrow;
+  std::optional<OutlineFault> crossing, short_edge, narrow;
   const auto keep_first = [](std::optional<OutlineFault>& kept, const OutlineFault& found) {
     if (!kept || std::pair(found.first, found.second) < std::pair(kept->first, kept->second)) kept = found;
   };
   for (std::size_t i = 0; i < n; ++i)
     if (const double length = (edges[i].b - edges[i].a).norm(); length < smallest)
-      keep_first(narrow, {Kind::narrow_place, i, i, length});
+      keep_first(short_edge, {Kind::narrow_place, i, i, length});
   visit_near_pairs(edges, smallest, [&](std::size_t i, std::size_t j) {
     if (clash(edges, i, j)) {
       keep_first(crossing, {Kind::crossing_edges, i, j, 0});
@@ -55,7 +55,7 @@ std::optional<OutlineFault> outline_fault(const std::vector<Point<2>>& corners, 
       keep_first(narrow, {Kind::narrow_place, i, j, between});
     return true;
   });
-  return crossing ? crossing : narrow;
+  return crossing ? crossing : short_edge ? short_edge : narrow;
 }
 
 double largest_extent(const std::vector<Point<2>>& points) {
