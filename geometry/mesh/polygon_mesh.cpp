@@ -59,7 +59,8 @@ public:
     }
 
     CGAL::Mesh_2::Face_badness operator()(const Triangulation::Face_handle& face, Quality& quality) const {
-      if (mesh_->number_of_faces() > most_cells)
+      // Two cells per point. To count the faces, CGAL goes round the hull.
+      if (2 * mesh_->number_of_vertices() > most_cells)
         throw InputError("a mesh would have too many cells", "more than " + std::to_string(most_cells),
                          "a coarser size, or a shape without places that are narrow against it",
                          "a polygon to mesh");

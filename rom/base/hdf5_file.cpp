@@ -197,7 +197,7 @@ Hdf5File Hdf5File::open_read(const std::filesystem::path& file) {
   const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) {
     const auto size = std::filesystem::file_size(file, failure);
-    if (const std::string reason = error_text(); reason.find("lock") != std::string::npos)
+    if (const std::string reason = error_text(); reason.find("unable to lock") != std::string::npos)
       throw InputError("the file is open in another program that may write to it", reason,
                        "a file that no other program holds open for writing", file.string());
     throw InputError("not a readable HDF5 file", std::to_string(size) + " bytes: " + error_text(),

@@ -135,7 +135,7 @@ const BadProfile bad_profiles[] = {
     {"magnet_in_membrane", 16, "overlap"},
     {"magnet_touches_membrane", 8, "crosses or touches the magnet"},
     {"spike", 6, "too short to be meshed"},
-    {"leaf_of_atoms", 8, "too near to each other to be meshed"},
+    {"leaf_of_atoms", 8, "too short to be meshed"},
     {"far_away", 3, "too far away"},
     {"negative_viscosity", 19, "'materials.fluid.viscosity' makes no sense"},
     {"unknown_material", 19, "materials.fluid.densty"},
