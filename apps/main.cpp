@@ -5,8 +5,11 @@
 
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <new>
 
 #include "apps/commands/commands.hpp"
+#include "apps/output/version_text.hpp"
 #include "apps/standard_streams.hpp"
 #include "rom/base/error.hpp"
 
@@ -32,6 +35,8 @@ int main(int argc, char** argv) {
   // 2. The command line.
   CLI::App app("Undula predicts the head-flow curve of a wave-membrane blood pump.", "undula");
   app.require_subcommand(1);
+  app.set_version_flag("--version", std::function<std::string()>(undula::apps::version_text),
+                       "print the version, the commit and those of libraries");
   undula::apps::add_check_command(app);
   undula::apps::add_solve_command(app);
   undula::apps::add_train_command(app);
@@ -52,6 +57,12 @@ int main(int argc, char** argv) {
     undula::apps::check_stdout();
   } catch (const undula::InputError& error) {
     return fail(error, wrong_input);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(
+        stderr,
+        "undula: the memory is not enough\n  at:  this computation\n  try: larger element sizes (undula "
+        "check says how many cells they give), or a machine with more memory\n");
+    return numerics_failed;
   } catch (const std::exception& error) {
     return fail(error, numerics_failed);
   }

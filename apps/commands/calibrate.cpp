@@ -89,6 +89,7 @@ std::vector<TargetCurve> make_targets(const CalibrateOptions& options,
     target.frequency_Hz =
         setting(options.frequency_Hz, curve.frequency_Hz, "frequency_Hz", "--frequency", target.name);
     target.stroke_mm = setting(options.stroke_mm, curve.stroke_mm, "stroke_mm", "--stroke", target.name);
+    warn_of_other_point(curve, target.name, "--frequency or --stroke", target.frequency_Hz, target.stroke_mm);
     target.head_mmHg = even_heads(curve.head_mmHg.front(), curve.head_mmHg.back(), options.points);
     for (const double head : target.head_mmHg) {
       target.flow_l_per_min.push_back(curve.fit(head));

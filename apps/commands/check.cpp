@@ -1,24 +1,22 @@
-// undula check scene.toml: validates everything, solves nothing.
+// undula check scene.toml: validates everything, meshes and cuts, solves nothing.
 //   undula check data/scenes/wave_pump_fixed.toml
 //   undula check data/scenes/wave_pump_thin_gap.toml
 //   undula check data/scenes/wave_pump_fixed.toml --set operating_point.head_mmHg=55 --json
 //   undula check --reference > docs/scene.md
 #include <array>
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
+#include "apps/input/scene_check.hpp"
+#include "apps/mpi_session.hpp"
 #include "apps/output/text_table.hpp"
-#include "fom/levels/scene_problem.hpp"
-#include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
-#include "fom/thin_gap/thin_gap.hpp"
-#include "geometry/mesh/mesh_quality.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::apps {
@@ -30,35 +28,6 @@ struct CheckOptions {
   bool reference = false;
   bool json = false;
 };
-
-struct NamedMesh {
-  std::string name;
-  MeshQuality quality;
-};
-
-/// Meshes the profile, or reads the meshes, of a scene; throws InputError for what is wrong with them.
-std::vector<NamedMesh> check_meshes(const Scene& scene) {
-  const FsiProblem<2> problem = scene_problem(scene);
-  std::vector<NamedMesh> meshes = {{"background", mesh_quality(problem.background)}};
-  for (const SolidBody<2>& solid : problem.solids) {
-    meshes.push_back({solid.name, mesh_quality(solid.mesh)});
-  }
-  return meshes;
-}
-
-/// What the check of a scene found: meshes, or the coefficients of the thin gaps.
-struct CheckedGeometry {
-  std::vector<NamedMesh> meshes;
-  std::optional<ThinGapLayout> thin_gap;
-};
-
-CheckedGeometry check_geometry(const Scene& scene) {
-  if (scene.space == Space::thin_gap) {
-    PhaseTimer timer;
-    return {{}, prepare_thin_gap(scene, timer).layout};
-  }
-  return {check_meshes(scene), std::nullopt};
-}
 
 std::vector<double> in_mm(const std::vector<double>& lengths) {
   std::vector<double> result;
@@ -128,59 +97,113 @@ std::string layout_tables(const ThinGapLayout& layout) {
          shortest(layout.holder_area) + " cm^2\n";
 }
 
-void print_json(const Scene& scene, const CheckedGeometry& geometry) {
-  nlohmann::ordered_json result = {{"scene", scene.name}, {"hash", scene_hash(scene)}};
-  for (const auto& [name, quality] : geometry.meshes) {
-    result["meshes"].push_back({{"name", name},
-                                {"cells", quality.cells},
-                                {"points", quality.points},
-                                {"min_angle_deg", quality.min_angle},
-                                {"shortest_edge_cm", quality.shortest_edge},
-                                {"longest_edge_cm", quality.longest_edge}});
+nlohmann::ordered_json point_in_mm(const Point<2>& x) {
+  return {units::length_to_mm(x[0]), units::length_to_mm(x[1])};
+}
+
+void print_json(const Scene& scene, const SceneCheck& check) {
+  nlohmann::ordered_json result = {{"scene", scene.name},
+                                   {"hash", scene_hash(scene)},
+                                   {"estimated_cells", std::round(check.estimated_cells)},
+                                   {"unknowns", check.unknowns},
+                                   {"steps", check.steps},
+                                   {"walls", check.walls},
+                                   {"notes", check.notes}};
+  for (const auto& mesh : check.meshes) {
+    nlohmann::ordered_json entry = {{"name", mesh.name},
+                                    {"cells", mesh.quality.cells},
+                                    {"points", mesh.quality.points},
+                                    {"min_angle_deg", mesh.quality.min_angle},
+                                    {"shortest_edge_cm", mesh.quality.shortest_edge},
+                                    {"longest_edge_cm", mesh.quality.longest_edge},
+                                    {"low_mm", point_in_mm(mesh.low)},
+                                    {"high_mm", point_in_mm(mesh.high)}};
+    if (!mesh.file.empty()) {
+      entry["file"] = mesh.file;
+      entry["reoriented_cells"] = mesh.reoriented;
+    }
+    result["meshes"].push_back(std::move(entry));
   }
-  if (geometry.thin_gap) {
-    result["thin_gap"] = layout_json(*geometry.thin_gap);
+  if (check.thin_gap) {
+    result["thin_gap"] = layout_json(*check.thin_gap);
   }
   result["resolved"] = scene_to_toml(scene);
   std::cout << result.dump(2) << "\n";
 }
 
-std::string mesh_table(const std::vector<NamedMesh>& meshes) {
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [name, quality] : meshes) {
-    rows.push_back({name, std::to_string(quality.cells), std::to_string(quality.points),
+std::string mesh_tables(const Scene& scene, const std::vector<CheckedMesh>& meshes) {
+  const bool axisymmetric = scene.space == Space::axisymmetric;
+  const bool imported = !scene.fluid_mesh.empty();
+  const auto range = [](double low, double high) {
+    return decimals(units::length_to_mm(low), 3) + " to " + decimals(units::length_to_mm(high), 3);
+  };
+  std::vector<std::vector<std::string>> rows, places;
+  for (const auto& mesh : meshes) {
+    const MeshQuality& quality = mesh.quality;
+    rows.push_back({mesh.name, std::to_string(quality.cells), std::to_string(quality.points),
                     decimals(quality.min_angle, 1), decimals(quality.shortest_edge, 4),
                     decimals(quality.longest_edge, 4)});
+    places.push_back({mesh.name, range(mesh.low[0], mesh.high[0]), range(mesh.low[1], mesh.high[1])});
+    if (imported) {
+      places.back().push_back(mesh.file);
+      places.back().push_back(std::to_string(mesh.reoriented));
+    }
+  }
+  std::vector<std::string> header = {"mesh", axisymmetric ? "r (mm)" : "x (mm)",
+                                     axisymmetric ? "z (mm)" : "y (mm)"};
+  if (imported) {
+    header.insert(header.end(), {"file", "cells turned round"});
   }
   return text_table({"mesh", "cells", "points", "min angle (deg)", "shortest edge (cm)", "longest edge (cm)"},
-                    rows);
+                    rows) +
+         "\n" + text_table(header, places);
 }
 
-void print_text(const Scene& scene, const CheckedGeometry& geometry) {
+std::string closing_lines(const SceneCheck& check) {
+  std::string text;
+  std::string walls;
+  for (const std::string& name : check.walls) {
+    walls += (walls.empty() ? "" : ", ") + name;
+  }
+  if (!walls.empty()) {
+    text += "walls: " + walls + "\n";
+  }
+  for (const std::string& note : check.notes) {
+    text += "note: " + note + "\n";
+  }
+  if (check.estimated_cells > 0) {
+    text += "about " + decimals(check.estimated_cells, 0) + " cells by the sizes asked for\n";
+  }
+  return text + std::to_string(check.unknowns) + " unknowns per step, " + std::to_string(check.steps) +
+         " steps\n";
+}
+
+void print_text(const Scene& scene, const SceneCheck& check) {
   std::cout << scene_to_toml(scene) << "\n"
-            << (geometry.thin_gap ? layout_tables(*geometry.thin_gap) : mesh_table(geometry.meshes))
-            << "\nscene " << scene.name << " is valid, hash " << scene_hash(scene) << "\n";
+            << (check.thin_gap ? layout_tables(*check.thin_gap) : mesh_tables(scene, check.meshes)) << "\n"
+            << closing_lines(check) << "\nscene " << scene.name << " is valid, hash " << scene_hash(scene)
+            << "\n";
 }
 
 void check(const CheckOptions& options) {
+  if (!is_first_process()) {
+    return;
+  }
   if (options.reference) {
     std::cout << scene_reference();
     return;
   }
-  // 1. Keys, types, ranges, contradictions.
+  // 1. Keys, types, ranges, contradictions, outlines.
   const Scene scene = read_scene(options.scene, options.overrides);
-  if (scene.training.stated) {
-    check_training(scene, options.scene);
-  }
 
-  // 2. Profile and meshes, or what thin gaps derive from the profile.
-  const CheckedGeometry geometry = check_geometry(scene);
+  // 2. Profile, meshes and cut, or what thin gaps derive from the profile.
+  const SceneCheck found = check_scene(scene);
 
   // 3. What a run would use.
   if (options.json) {
-    print_json(scene, geometry);
+    print_json(scene, found);
   } else {
-    print_text(scene, geometry);
+    print_text(scene, found);
   }
 }
 

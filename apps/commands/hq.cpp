@@ -59,6 +59,15 @@ LevelSource read_beside(const HqCommandOptions& options, const Scene& scene) {
   return read_level_source(options.beside, {}, point.frequency, stroke);
 }
 
+/// Runs of another operating point are not drawn.
+void warn_of_other_runs(const RecordedCurve& runs, const std::string& file, double frequency_Hz,
+                        double stroke_mm) {
+  if (!same_setting(runs.frequency_Hz, frequency_Hz) || !same_setting(runs.stroke_mm, stroke_mm)) {
+    spdlog::warn("{} holds runs of another operating point, {} Hz, stroke {} mm, which are not drawn", file,
+                 shortest(runs.frequency_Hz), shortest(runs.stroke_mm));
+  }
+}
+
 /// The band of a curve. Curves of thin gaps need one rank each, so that every rank computes its own; those of
 /// finite elements take all ranks one after the other.
 UncertaintyBand band_of_curve(const Scene& scene, std::span<const CurvePoint> points, MPI_Comm comm) {
@@ -98,9 +107,16 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
   if (!options.data.empty()) {
     measured = read_measured_curve(options.data);
   }
+  const double frequency_Hz = scene.operating_point.frequency,
+               stroke_mm = units::length_to_mm(scene.operating_point.stroke);
+  const std::string asked = source.model ? "the model" : "the scene";
+  if (measured) {
+    warn_of_other_point(*measured, options.data, asked, frequency_Hz, stroke_mm);
+  }
   std::vector<RecordedCurve> recorded;
   if (!options.runs.empty()) {
     recorded.push_back(read_recorded_curve(options.runs));
+    warn_of_other_runs(recorded.back(), options.runs, frequency_Hz, stroke_mm);
   }
   if (source.model) {
     recorded.push_back(kept_runs(*source.model, scene.operating_point.frequency, *options.stroke_mm));

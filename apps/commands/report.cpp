@@ -121,6 +121,7 @@ void report(const ReportOptions& options, MPI_Comm comm) {
     check_picture_name(options.picture);
   }
   const MeasuredCurve measured = read_measured_curve(options.data);
+  warn_of_other_point(measured, options.data, "the report", options.frequency_Hz, options.stroke_mm);
   std::vector<Variation> variations;
   for (const std::string& text : options.variations) {
     variations.push_back(parse_variation(text));

@@ -12,6 +12,7 @@
 
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
+#include "apps/input/level_source.hpp"
 #include "apps/mpi_session.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/solve_plots.hpp"
@@ -66,9 +67,30 @@ std::string statistics_text(const std::vector<ColumnStatistics>& statistics) {
   std::vector<std::vector<std::string>> rows;
   for (const ColumnStatistics& one : statistics) {
     rows.push_back({one.column, shortest(one.last), shortest(one.mean), shortest(one.amplitude),
-                    one.oscillations == 0 ? "-" : shortest(one.frequency_Hz)});
+                    one.oscillations == 0 ? "-" : shortest(one.frequency_Hz), shortest(one.mean_change),
+                    shortest(one.amplitude_change)});
   }
-  return text_table({"column", "last", "mean", "amplitude", "frequency (Hz)"}, rows);
+  return text_table(
+      {"column", "last", "mean", "amplitude", "frequency (Hz)", "change of mean", "change of amplitude"},
+      rows);
+}
+
+/// Statistics of a signal that still grows are those of the window.
+void warn_of_unsettled(const std::vector<ColumnStatistics>& statistics) {
+  const auto columns = unsettled_columns(statistics);
+  if (columns.empty()) {
+    return;
+  }
+  constexpr std::size_t most = 6;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(most, columns.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + columns[i];
+  }
+  spdlog::warn(
+      "the statistics of {} of {} columns still change by more than 5 % between the last two oscillations or "
+      "the "
+      "halves of the window: {}{}; a later output.statistics_from_s or time.end_s",
+      columns.size(), statistics.size(), names, columns.size() > most ? ", ..." : "");
 }
 
 std::string table_text(const SolvedRun& run) {
@@ -112,7 +134,9 @@ std::string json_text(const SolvedRun& run, const PhaseTimer& timer) {
                                         {"mean", one.mean},
                                         {"amplitude", one.amplitude},
                                         {"frequency_Hz", one.frequency_Hz},
-                                        {"oscillations", one.oscillations}};
+                                        {"oscillations", one.oscillations},
+                                        {"mean_change", one.mean_change},
+                                        {"amplitude_change", one.amplitude_change}};
   }
   for (const auto& [phase, record] : timer.records()) {
     result["phases"][phase] = {{"seconds", record.seconds}, {"calls", record.calls}};
@@ -150,6 +174,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   // 1. Read the scene; refuse what would be refused later.
   const Scene scene = read_scene(options.scene, options.overrides);
   check_checkpoint_interval(scene);
+  warn_of_profile(scene);
   const std::string folder = options.output.empty() ? scene.name + "_run" : options.output;
   const ExistingRun existing = options.restart ? ExistingRun::go_on
                                : options.force ? ExistingRun::replace
@@ -225,6 +250,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
           "the membrane passes through a wall, which fixed coupling does not feel; "
           "the geometry is that of rest");
     }
+    warn_of_unsettled(run.statistics);
     std::cout << (options.json ? json_text(run, timer) : table_text(run));
     if (options.plot) {
       plot_run(*output, scene, state);

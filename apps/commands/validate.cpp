@@ -114,6 +114,8 @@ void run(const ValidateOptions& options, MPI_Comm comm) {
   const LevelSource source =
       read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm);
   const Scene& scene = source.scene;
+  warn_of_other_point(comparison.curve, options.data, source.model ? "the model" : "the scene",
+                      scene.operating_point.frequency, units::length_to_mm(scene.operating_point.stroke));
 
   // 2. Meshes and operators, coefficients, or modes, shared by all heads.
   PhaseTimer timer;

@@ -1,11 +1,16 @@
 #include "apps/input/level_source.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/Error.hpp>
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <utility>
 
 #include "apps/input/reduced_model.hpp"
 #include "fom/levels/reduced_level.hpp"
+#include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "rom/base/error.hpp"
@@ -35,7 +40,18 @@ LevelSource read_model_source(const std::string& file, const std::vector<std::st
 
 } // namespace
 
-bool is_scene(const std::string& file) { return std::filesystem::path(file).extension() == ".toml"; }
+bool is_scene(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".toml";
+}
+
+void warn_of_profile(const Scene& scene) {
+  for (const std::string& sentence : profile_differences(scene)) {
+    spdlog::warn("{}", sentence);
+  }
+}
 
 LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
                               const std::optional<double>& frequency_Hz,
@@ -53,6 +69,7 @@ LevelSource read_level_source(const std::string& file, std::vector<std::string> 
   source.file = file;
   source.scene = read_scene(file, overrides);
   require_pump(source.scene, "a head-flow curve");
+  warn_of_profile(source.scene);
   return source;
 }
 

@@ -21,8 +21,11 @@ struct LevelSource {
   std::optional<rom::Model> model; ///< nothing for a scene
 };
 
-/// Whether a file is read as a scene.
+/// Whether a file is read as a scene, by its ending (.toml in any case).
 bool is_scene(const std::string& file);
+
+/// Logs what the profile of a scene states otherwise than the scene.
+void warn_of_profile(const Scene& scene);
 
 /// Reads a scene of a pump with `--set` overrides, then `--frequency` and `--stroke` where they are given; or
 /// a reduced model, which needs frequency and stroke and has no keys to override. Throws InputError (or

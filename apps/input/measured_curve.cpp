@@ -1,16 +1,21 @@
 #include "apps/input/measured_curve.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <Eigen/QR>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "apps/output/text_table.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::apps {
@@ -25,16 +30,53 @@ std::string_view trimmed(std::string_view text) {
 }
 
 bool read_number(std::string_view text, double& value) {
-  const std::string_view digits = trimmed(text);
+  std::string_view digits = trimmed(text);
+  if (digits.size() > 1 && digits.front() == '"' && digits.back() == '"') {
+    digits = trimmed(digits.substr(1, digits.size() - 2));
+  }
+  if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-' && digits[1] != '+') {
+    digits.remove_prefix(1);
+  }
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   return !digits.empty() && error == std::errc() && end == digits.data() + digits.size() &&
          std::isfinite(value);
 }
 
-/// Reads "# key = number" into `value`; leaves other comments alone.
+/// The text in UTF-8, without a byte order mark. What UTF-16 has beyond ASCII becomes '?': it can stand in
+/// comments alone.
+std::string plain_text(const std::string& bytes) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  if (bytes.size() >= 3 && byte(0) == 0xef && byte(1) == 0xbb && byte(2) == 0xbf) {
+    return bytes.substr(3);
+  }
+  const bool little = bytes.size() >= 2 && byte(0) == 0xff && byte(1) == 0xfe;
+  const bool big = bytes.size() >= 2 && byte(0) == 0xfe && byte(1) == 0xff;
+  if (!little && !big) {
+    return bytes;
+  }
+  std::string text;
+  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    const unsigned code = little ? byte(i) + 256U * byte(i + 1) : 256U * byte(i) + byte(i + 1);
+    text += code < 0x80 ? static_cast<char>(code) : '?';
+  }
+  return text;
+}
+
+/// The columns of a header without quotes.
+std::string without_quotes(std::string_view text) {
+  std::string plain(text);
+  std::erase(plain, '"');
+  return plain;
+}
+
+bool only_separators(std::string_view text) {
+  return text.find_first_not_of(", \t\"") == std::string_view::npos;
+}
+
+/// Reads "# key = number" or "# key: number" into `value`; leaves other comments alone.
 void read_setting(std::string_view comment, std::string_view key, std::optional<double>& value,
                   const std::string& where) {
-  const auto equals = comment.find('=');
+  const auto equals = comment.find_first_of("=:");
   if (equals == std::string_view::npos || trimmed(comment.substr(1, equals - 1)) != key) {
     return;
   }
@@ -67,11 +109,13 @@ double QuadraticFit::operator()(double head_mmHg) const {
 
 MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
   std::error_code ignored;
-  std::ifstream stream(file);
-  if (!std::filesystem::is_regular_file(file, ignored) || !stream) {
+  std::ifstream raw(file, std::ios::binary);
+  if (!std::filesystem::is_regular_file(file, ignored) || !raw) {
     throw InputError("the measured data cannot be read", "no readable file \"" + file.string() + '"',
                      "a CSV file with columns " + std::string(header), "command line");
   }
+  std::istringstream stream(
+      plain_text({std::istreambuf_iterator<char>(raw), std::istreambuf_iterator<char>()}));
   MeasuredCurve curve;
   bool has_header = false;
   int line_number = 0;
@@ -79,7 +123,7 @@ MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
     ++line_number;
     const std::string_view text = trimmed(line);
     const std::string where = file.string() + ":" + std::to_string(line_number);
-    if (text.empty()) {
+    if (only_separators(text)) {
       continue;
     }
     if (text.front() == '#') {
@@ -90,7 +134,7 @@ MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
       continue;
     }
     if (!has_header) {
-      if (text != header) {
+      if (without_quotes(text) != header) {
         throw InputError("the columns of the measured data are not known", std::string(text.substr(0, 80)),
                          "a header line " + std::string(header), where);
       }
@@ -116,6 +160,30 @@ MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
   sort_samples(curve);
   curve.fit = fit_quadratic(curve.head_mmHg, curve.flow_l_per_min);
   return curve;
+}
+
+std::string other_operating_point(const MeasuredCurve& curve, const std::string& file,
+                                  const std::string& what, double frequency_Hz, double stroke_mm) {
+  const auto differs = [](const std::optional<double>& stated, double asked) {
+    return stated && std::abs(*stated - asked) > 1e-6 * std::abs(asked);
+  };
+  if (!differs(curve.frequency_Hz, frequency_Hz) && !differs(curve.stroke_mm, stroke_mm)) {
+    return "";
+  }
+  const auto stated = [](const std::optional<double>& value, const char* unit) {
+    return (value ? shortest(*value) : std::string("unstated")) + unit;
+  };
+  return file + " was measured at another operating point: " + stated(curve.frequency_Hz, " Hz") +
+         ", stroke " + stated(curve.stroke_mm, " mm") + "; " + what + " has " + shortest(frequency_Hz) +
+         " Hz, " + shortest(stroke_mm) + " mm";
+}
+
+void warn_of_other_point(const MeasuredCurve& curve, const std::string& file, const std::string& what,
+                         double frequency_Hz, double stroke_mm) {
+  const std::string sentence = other_operating_point(curve, file, what, frequency_Hz, stroke_mm);
+  if (!sentence.empty()) {
+    spdlog::warn("{}", sentence);
+  }
 }
 
 QuadraticFit fit_quadratic(std::span<const double> head_mmHg, std::span<const double> flow_l_per_min) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace undula::apps {
@@ -35,11 +36,21 @@ struct ExtractedPoint {
 };
 
 /// Reads a CSV file with the header line `head_mmHg,flow_l_per_min`, one sample per line; lines that start
-/// with # and empty lines are skipped, but for `# frequency_Hz = 120` and `# stroke_mm = 0.53` before the
-/// header. Throws InputError with file and line for a missing file, another header, a frequency or stroke
-/// that is not a positive number or stated twice, a line that is not two finite numbers, and for fewer than
-/// three different heads.
+/// with # and empty lines are skipped, but for `# frequency_Hz = 120` and `# stroke_mm = 0.53` (or with a
+/// colon) before the header. What spreadsheets write is read alike: a byte order mark, UTF-16 with one,
+/// quotes around fields, signs in front of numbers, rows of commas alone. Throws InputError with file and
+/// line for a missing file, another header, a frequency or stroke that is not a positive number or stated
+/// twice, a line that is not two finite numbers, and for fewer than three different heads.
 MeasuredCurve read_measured_curve(const std::filesystem::path& file);
+
+/// A sentence for the log where the file states another frequency or stroke than `what` has; empty where it
+/// states the same, or nothing. A curve of another operating point says nothing of what it is put beside.
+std::string other_operating_point(const MeasuredCurve& curve, const std::string& file,
+                                  const std::string& what, double frequency_Hz, double stroke_mm);
+
+/// Logs it, unless it is empty.
+void warn_of_other_point(const MeasuredCurve& curve, const std::string& file, const std::string& what,
+                         double frequency_Hz, double stroke_mm);
 
 /// Least-squares parabola through samples (same lengths, at least three different heads).
 QuadraticFit fit_quadratic(std::span<const double> head_mmHg, std::span<const double> flow_l_per_min);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
 
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
@@ -58,12 +59,23 @@ void refuse_files_of_others(const std::filesystem::path& picture) {
 std::string gnuplot_string(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
-    quoted += c == '\'' ? "''" : std::string(1, c);
+    // The end of a line would end the text, and what follows would be a command.
+    const auto code = static_cast<unsigned char>(c);
+    quoted += c == '\'' ? "''" : std::string(1, code < 0x20 || code == 0x7f ? ' ' : c);
   }
   return quoted + "'";
 }
 
 void check_picture_name(const std::filesystem::path& picture) {
+  for (const char c : picture.string()) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7f) {
+      char seen[8];
+      std::snprintf(seen, sizeof seen, "\\x%02x", code);
+      throw InputError("the picture has a control character in its name", seen,
+                       "a name that ends in .png, of characters that can be seen", "--plot");
+    }
+  }
   if (picture.extension() != ".png" || picture.stem().empty()) {
     throw InputError("the picture has a name of another format", '"' + picture.string() + '"',
                      "a name that ends in .png", "--plot");

@@ -7,10 +7,11 @@
 
 namespace undula::apps {
 
-/// Text in single quotes as gnuplot reads it.
+/// Text in single quotes as gnuplot reads it, on one line: control characters become spaces.
 std::string gnuplot_string(const std::string& text);
 
-/// Throws InputError for a picture whose name does not end in .png, or whose folder does not exist.
+/// Throws InputError for a picture whose name does not end in .png or has control characters, or whose folder
+/// does not exist.
 void check_picture_name(const std::filesystem::path& picture);
 
 /// Writes NAME.dat and NAME.gp beside `picture` (NAME.png) and runs gnuplot on them. `commands` may refer to

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "fom/levels/scene_problem.hpp"
 #include "fom/output/provenance.hpp"
 #include "fom/output/run_files.hpp"
 #include "fom/output/scene_difference.hpp"
 #include "fom/output/series_statistics.hpp"
 #include "fom/output/state_file.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"

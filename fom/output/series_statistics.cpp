@@ -1,6 +1,7 @@
 #include "fom/output/series_statistics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "rom/base/error.hpp"
@@ -77,27 +78,48 @@ std::vector<ColumnStatistics> series_statistics(const TimeSeries& table, double 
     one.last = table.value(table.rows() - 1, column);
     auto extremes = samples.extremes(0, samples.value.size());
     const double size = std::max(std::abs(extremes.low), std::abs(extremes.high));
+    std::array<std::size_t, 3> halves = {0, samples.value.size() / 2, samples.value.size()};
     if (extremes.amplitude() > 1e-9 * size) {
       const auto crossings = upward_crossings(samples, extremes);
-      if (crossings.size() > 1) {
-        one.oscillations = static_cast<int>(crossings.size()) - 1;
+      const std::size_t n = crossings.size();
+      if (n > 1) {
+        one.oscillations = static_cast<int>(n) - 1;
         one.frequency_Hz = one.oscillations / (crossings.back().time - crossings.front().time);
-        extremes = samples.extremes(crossings[crossings.size() - 2].row, crossings.back().row);
+        extremes = samples.extremes(crossings[n - 2].row, crossings.back().row);
       }
+      if (n > 2) halves = {crossings[n - 3].row, crossings[n - 2].row, crossings[n - 1].row};
     }
     one.mean = extremes.mean();
     one.amplitude = extremes.amplitude();
+    if (halves[1] > halves[0]) {
+      const auto before = samples.extremes(halves[0], halves[1]);
+      const auto after = samples.extremes(halves[1], halves[2]);
+      one.mean_change = after.mean() - before.mean();
+      one.amplitude_change = after.amplitude() - before.amplitude();
+    }
     all.push_back(std::move(one));
   }
   return all;
 }
 
+std::vector<std::string> unsettled_columns(const std::vector<ColumnStatistics>& statistics) {
+  constexpr double settled = 0.05;
+  std::vector<std::string> columns;
+  for (const auto& one : statistics) {
+    const double size = std::max(std::abs(one.mean), one.amplitude);
+    if (std::max(std::abs(one.mean_change), std::abs(one.amplitude_change)) > settled * size)
+      columns.push_back(one.column);
+  }
+  return columns;
+}
+
 void write_statistics(const std::vector<ColumnStatistics>& statistics, const std::filesystem::path& file) {
-  std::string text = "column,last,mean,amplitude,frequency_Hz,oscillations\n";
+  std::string text = "column,last,mean,amplitude,frequency_Hz,oscillations,mean_change,amplitude_change\n";
   for (const auto& one : statistics)
     text += one.column + "," + exact_number(one.last) + "," + exact_number(one.mean) + "," +
             exact_number(one.amplitude) + "," + exact_number(one.frequency_Hz) + "," +
-            std::to_string(one.oscillations) + "\n";
+            std::to_string(one.oscillations) + "," + exact_number(one.mean_change) + "," +
+            exact_number(one.amplitude_change) + "\n";
   replace_text_file(file, text);
 }
 

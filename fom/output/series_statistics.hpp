@@ -19,6 +19,9 @@ struct ColumnStatistics {
   double frequency_Hz =
       0;                ///< from the upward crossings of the mean in the window; 0: less than one oscillation
   int oscillations = 0; ///< full ones in the window
+  /// Of the last full oscillation against the one before; of the second half of the window against the first
+  /// where it has less than two.
+  double mean_change = 0, amplitude_change = 0;
 };
 
 /// Of every column but "time_s", over the rows from time `from` (s) on, or all if the table ends before it.
@@ -27,7 +30,11 @@ struct ColumnStatistics {
 /// its size does not oscillate. Throws InputError for a table without "time_s".
 std::vector<ColumnStatistics> series_statistics(const TimeSeries& table, double from);
 
-/// "column,last,mean,amplitude,frequency_Hz,oscillations", written in one step.
+/// Columns whose mean or amplitude still changes by more than 5 % of the larger of |mean| and amplitude:
+/// their statistics belong to the window, not to the problem.
+std::vector<std::string> unsettled_columns(const std::vector<ColumnStatistics>& statistics);
+
+/// "column,last,mean,amplitude,frequency_Hz,oscillations,mean_change,amplitude_change", written in one step.
 void write_statistics(const std::vector<ColumnStatistics>& statistics, const std::filesystem::path& file);
 
 } // namespace undula::fom

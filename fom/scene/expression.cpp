@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "rom/base/error.hpp"
 #include "rom/base/smooth_ramp.hpp"
@@ -17,6 +18,23 @@ std::array<std::string, 3> expression_variables(Space space) {
   if (space == Space::axisymmetric) return {"r", "z", "t"};
   return {"x", "y", "t"};
 }
+
+namespace {
+
+/// In muParser `x = 20` gives x the value 20, whatever x is.
+void refuse_assignment(const std::string& text, const std::string& where) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '=') continue;
+    const bool pair = i + 1 < text.size() && text[i + 1] == '=';
+    const bool compares = i > 0 && std::string_view("<>!").find(text[i - 1]) != std::string_view::npos;
+    if (pair) ++i;
+    if (pair || compares) continue;
+    throw InputError("an expression assigns a value", '"' + text + '"',
+                     '"' + text.substr(0, i) + "=" + text.substr(i) + "\": == compares", where);
+  }
+}
+
+} // namespace
 
 struct Expression::Evaluation {
   mu::Parser parser;
@@ -31,6 +49,7 @@ Expression::Expression(const std::string& text, Space space, const std::map<std:
   evaluation_->text = text;
   evaluation_->where = where;
   const auto names = expression_variables(space);
+  refuse_assignment(text, where);
   try {
     parser.DefineConst("pi", std::numbers::pi);
     parser.DefineFun("ramp", smooth_ramp);
@@ -51,15 +70,20 @@ Expression::Expression(const std::string& text, Space space, const std::map<std:
 
 Expression::~Expression() = default;
 
-double Expression::operator()(double x_mm, double y_mm, double t) const {
+std::optional<double> Expression::finite_value(double x_mm, double y_mm, double t) const {
   evaluation_->variables = {x_mm, y_mm, t};
   const double value = evaluation_->parser.Eval();
-  if (!std::isfinite(value))
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+double Expression::operator()(double x_mm, double y_mm, double t) const {
+  const auto value = finite_value(x_mm, y_mm, t);
+  if (!value)
     throw NumericsError("an expression of the scene has no finite value",
                         '"' + evaluation_->text + "\" at (" + exact_number(x_mm) + ", " + exact_number(y_mm) +
                             ") mm, t = " + exact_number(t) + " s, " + evaluation_->where,
                         "an expression that is finite in the whole domain");
-  return value;
+  return *value;
 }
 
 bool is_free_name(const std::string& name) {

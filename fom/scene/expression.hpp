@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "fom/scene/scene.hpp"
@@ -18,7 +19,8 @@ std::array<std::string, 3> expression_variables(Space space);
 /// = T as (1 - cos(pi t / T)) / 2. Copies share one parser: not for several threads.
 class Expression {
 public:
-  /// Throws InputError, with `where`, for text that is no expression in these names.
+  /// Throws InputError, with `where`, for text that is no expression in these names, and for one that
+  /// assigns.
   Expression(const std::string& text, Space space, const std::map<std::string, double>& constants,
              const std::string& where);
   ~Expression();
@@ -27,6 +29,9 @@ public:
 
   /// Value at a position in mm. Throws NumericsError where it is not finite.
   double operator()(double x_mm, double y_mm, double t) const;
+
+  /// The same, nothing where it is not finite.
+  std::optional<double> finite_value(double x_mm, double y_mm, double t) const;
 
 private:
   struct Evaluation;

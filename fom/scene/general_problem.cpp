@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "fom/fom.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/expression.hpp"
+#include "fom/scene/fluid_size.hpp"
 #include "fom/scene/scene_time.hpp"
+#include "fom/scene/shape_outline.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
 #include "geometry/mesh/polygons.hpp"
 #include "rom/base/error.hpp"
@@ -19,125 +20,21 @@ namespace {
 
 constexpr double min_angle = 25; ///< degrees, of the meshes
 
-Point<2> point_of(const Position& position) { return {position[0], position[1]}; }
-
-/// Corners of a circle, four of them on the axes through its centre, no further apart than `size`.
-std::vector<Point<2>> circle(const Position& centre, double radius, double size) {
-  const double quarter = 0.5 * std::numbers::pi * radius / size;
-  const int corners = 4 * std::clamp(static_cast<int>(std::ceil(quarter)), 4, 100000);
-  std::vector<Point<2>> points;
-  for (int k = 0; k < corners; ++k) {
-    const double angle = 2 * std::numbers::pi * k / corners;
-    points.push_back(point_of(centre) + radius * Point<2>(std::cos(angle), std::sin(angle)));
-  }
-  return points;
-}
-
-/// The half of a circle with r >= 0, about a centre on the axis.
-std::vector<Point<2>> half_circle(const Position& centre, double radius, double size) {
-  auto points = circle(centre, radius, size);
-  std::erase_if(points, [&](const Point<2>& x) { return x[0] < 1e-6 * radius; });
-  // From the lower pole to the upper one.
-  std::sort(points.begin(), points.end(), [](const Point<2>& a, const Point<2>& b) { return a[1] < b[1]; });
-  points.insert(points.begin(), Point<2>(0.0, centre[1] - radius));
-  points.emplace_back(0.0, centre[1] + radius);
-  return points;
-}
-
-/// `axisymmetric`: circles about a point of the axis are half discs, the meridian of a sphere.
-std::vector<Point<2>> corners_of(const ShapeStatement& shape, double size, bool axisymmetric = false) {
-  if (shape.radius > 0 && axisymmetric && shape.centre[0] == 0)
-    return half_circle(shape.centre, shape.radius, size);
-  if (shape.radius > 0) return circle(shape.centre, shape.radius, size);
-  std::vector<Point<2>> points;
-  for (const auto& corner : shape.outline) points.push_back(point_of(corner));
-  return points;
-}
-
-/// Counter-clockwise, with the tags of its edges.
-void orient(TaggedPolygon& polygon) {
-  if (polygon_area(polygon.points) > 0) return;
-  std::reverse(polygon.points.begin(), polygon.points.end());
-  // Edge j now runs from the old corner n-1-j to n-2-j.
-  std::reverse(polygon.tags.begin(), polygon.tags.end());
-  std::rotate(polygon.tags.begin(), polygon.tags.begin() + 1, polygon.tags.end());
-}
-
-/// Element size of the fluid: small at some edges and in some boxes, growing away from them.
-class FluidSize {
-public:
-  FluidSize(double largest, double growth) : largest_(largest), growth_(growth) {}
-
-  void at_edges(const std::vector<Point<2>>& loop, double size) {
-    for (std::size_t i = 0; i < loop.size(); ++i) at_edge(loop[i], loop[(i + 1) % loop.size()], size);
-  }
-  void at_edge(const Point<2>& a, const Point<2>& b, double size) {
-    if (size > 0) edges_.push_back({a, b, size});
-  }
-  void in_box(const RefinementBox<2>& box) { boxes_.push_back(box); }
-
-  double operator()(const Point<2>& x) const {
-    double size = largest_;
-    for (const auto& edge : edges_)
-      size = std::min(size, edge.size + growth_ * distance_to_segment<2>(edge.a, edge.b, x));
-    for (const auto& box : boxes_) size = std::min(size, size_about(box, growth_, x));
-    return size;
-  }
-
-private:
-  struct SizedEdge {
-    Point<2> a, b;
-    double size;
-  };
-  double largest_, growth_;
-  std::vector<SizedEdge> edges_;
-  std::vector<RefinementBox<2>> boxes_;
-};
-
-int tag_of(std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<int>(found - names.begin());
-  names.push_back(name);
-  return static_cast<int>(names.size()) - 1;
-}
-
 SimplexMesh<2> domain_mesh(const ProblemStatement& problem, bool axisymmetric) {
   const auto& domain = problem.domain;
   if (domain.shape.outline.empty() && domain.shape.radius == 0) return {};
-  const auto size_at = [&](const std::string& boundary) {
-    const auto found = problem.boundaries.find(boundary);
-    const double size = found == problem.boundaries.end() ? 0.0 : found->second.size;
-    return size > 0 ? std::min(size, domain.size) : domain.size;
-  };
-  TaggedPolygon polygon;
-  polygon.points = corners_of(domain.shape, size_at(domain.sides.front()));
-  for (std::size_t i = 0; i < polygon.points.size(); ++i)
-    polygon.tags.push_back(tag_of(polygon.names, domain.sides[domain.shape.radius > 0 ? 0 : i]));
-  orient(polygon);
-  FluidSize size(domain.size, domain.growth);
-  for (std::size_t i = 0; i < polygon.points.size(); ++i)
-    size.at_edge(polygon.points[i], polygon.points[(i + 1) % polygon.points.size()],
-                 size_at(polygon.names[polygon.tags[i]]));
-  for (const auto& [name, hole] : problem.holes) {
-    polygon.holes.push_back({corners_of(hole.shape, size_at(name)), tag_of(polygon.names, name)});
-    size.at_edges(polygon.holes.back().points, size_at(name));
-  }
-  for (const auto& [name, body] : problem.bodies) {
-    const double wanted = body.fluid_size > 0 ? body.fluid_size : domain.size;
-    size.at_edges(corners_of(body.shape, wanted, axisymmetric), body.fluid_size);
-    if (body.shape.inner_radius > 0)
-      size.at_edges(circle(body.shape.centre, body.shape.inner_radius, wanted), body.fluid_size);
-  }
-  for (const auto& box : refinement_boxes(problem)) size.in_box(box);
-  return mesh_polygon(polygon, size, min_angle);
+  const TaggedPolygon polygon = domain_polygon(problem);
+  const FluidSize size(problem, polygon, axisymmetric);
+  return mesh_polygon(
+      polygon, [&](const Point<2>& x) { return size(x); }, min_angle);
 }
 
 SimplexMesh<2> body_mesh(const BodyStatement& body, bool axisymmetric) {
   TaggedPolygon polygon;
   polygon.names = {"skin"};
-  polygon.points = corners_of(body.shape, body.size, axisymmetric);
+  polygon.points = body_corners(body, axisymmetric);
+  if (twice_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
   polygon.tags.assign(polygon.points.size(), 0);
-  orient(polygon);
   if (body.shape.inner_radius > 0)
     polygon.holes.push_back({circle(body.shape.centre, body.shape.inner_radius, body.size), 0});
   if (body.line.size() > 1) {

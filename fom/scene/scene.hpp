@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ enum class Interface {
   no_slip,
   slip ///< Navier slip of the length of ContactSettings on the skin of the solids
 };
+
+/// Unit of length of an imported mesh.
+enum class MeshUnit { cm, mm, um, m, inch };
 
 /// Wall friction in a thin gap.
 enum class GapFriction {
@@ -76,7 +80,6 @@ struct Tolerance {
 
 /// Box of a training campaign.
 struct TrainingPlan {
-  bool stated = false;                          ///< the scene has a key of it
   double frequency_low = 0, frequency_high = 0; ///< Hz
   double stroke_low = 0, stroke_high = 0;       ///< cm
   double head_low = 0, head_high = 0;           ///< dyn/cm^2
@@ -105,7 +108,8 @@ struct Scene {
   std::filesystem::path file;       ///< the scene file itself (absolute), empty if built in code
   std::filesystem::path profile;    ///< pump profile (TOML); relative paths in the scene are relative to it
   std::filesystem::path fluid_mesh; ///< Gmsh meshes instead of a profile; both empty otherwise
-  std::vector<std::filesystem::path> solid_meshes;
+  std::vector<std::filesystem::path> solid_meshes; ///< the membrane first
+  MeshUnit mesh_unit = MeshUnit::cm;               ///< of the Gmsh meshes
   double clearance_scale = 1; ///< of the clearances between membrane and flanges in the profile
   double rim_gap_scale = 1;   ///< of the gap between the membrane's rim and the housing in the profile
   ProblemStatement problem;   ///< in place of a pump
@@ -128,7 +132,8 @@ struct Scene {
   ThinGapSettings thin_gap;
   TrainingPlan training;
   OutputSettings output;
-  std::vector<Tolerance> tolerances; ///< of inputs stated as { value = ..., tolerance = ... }
+  std::vector<Tolerance> tolerances;         ///< of inputs stated as { value = ..., tolerance = ... }
+  std::map<std::string, std::string> places; ///< path of a key -> where it was stated, "pump.toml:12"
 };
 
 } // namespace undula::fom

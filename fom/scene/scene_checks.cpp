@@ -1,5 +1,8 @@
 #include "fom/scene/scene_checks.hpp"
 
+#include <algorithm>
+
+#include "fom/scene/key_place.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_value.hpp"
 #include "fom/scene/statement_checks.hpp"
@@ -21,6 +24,16 @@ void check_geometry(const Scene& scene, const std::string& where) {
     throw InputError("\"geometry.solid_meshes\" stands without a mesh of the fluid",
                      "no \"geometry.fluid_mesh\"", "\"geometry.fluid_mesh\", a Gmsh file",
                      where + ", section [geometry]");
+  }
+  if (has_meshes && scene.solid_meshes.empty()) {
+    throw InputError("a pump has no membrane", "no \"geometry.solid_meshes\"",
+                     "\"geometry.solid_meshes\", the mesh of the membrane first",
+                     place_of_key(scene, "geometry.solid_meshes", where));
+  }
+  if (!has_meshes && scene.mesh_unit != MeshUnit::cm) {
+    throw InputError("a unit of meshes stands without meshes", "\"geometry.mesh_unit\" with a profile",
+                     "\"geometry.fluid_mesh\" and \"geometry.solid_meshes\"; profiles are in cm",
+                     place_of_key(scene, "geometry.mesh_unit", where));
   }
   if (has_meshes && (scene.clearance_scale != 1 || scene.rim_gap_scale != 1)) {
     throw InputError("gaps cannot be scaled without a profile",
@@ -105,6 +118,14 @@ void check_levels(const Scene& scene, const std::string& where) {
 }
 
 void check_time(const Scene& scene, const std::string& where) {
+  if (const double steps = static_cast<double>(scene.time.periods) * scene.time.steps_per_period;
+      steps > most_steps) {
+    throw InputError("the run has too many time steps",
+                     shortest_number(steps) + " steps, periods = " + std::to_string(scene.time.periods) +
+                         ", steps_per_period = " + std::to_string(scene.time.steps_per_period),
+                     "at most " + std::to_string(most_steps),
+                     place_of_key(scene, "time.steps_per_period", where));
+  }
   if (scene.time.ramp_periods > scene.time.periods) {
     throw InputError("the smooth start is longer than the run",
                      "ramp_periods = " + shortest_number(scene.time.ramp_periods),
@@ -121,6 +142,21 @@ void check_bounds(const char* quantity, double low, double high, const std::stri
 }
 
 } // namespace
+
+void check_consistency(const Scene& scene, const std::string& where) {
+  check_refinements(scene, where);
+  if (scene.problem.general) {
+    check_statement(scene, where);
+    check_contact(scene, where);
+    return;
+  }
+  check_geometry(scene, where);
+  check_clamp(scene, where);
+  check_levels(scene, where);
+  check_contact(scene, where);
+  check_damping(scene, where);
+  check_time(scene, where);
+}
 
 void check_training(const Scene& scene, const std::string& where) {
   const TrainingPlan& plan = scene.training;
@@ -142,19 +178,9 @@ void check_training(const Scene& scene, const std::string& where) {
   }
 }
 
-void check_consistency(const Scene& scene, const std::string& where) {
-  check_refinements(scene, where);
-  if (scene.problem.general) {
-    check_statement(scene, where);
-    check_contact(scene, where);
-    return;
-  }
-  check_geometry(scene, where);
-  check_clamp(scene, where);
-  check_levels(scene, where);
-  check_contact(scene, where);
-  check_damping(scene, where);
-  check_time(scene, where);
+bool states_training(const Scene& scene) {
+  return std::any_of(scene.places.begin(), scene.places.end(),
+                     [](const auto& place) { return place.first.starts_with("training."); });
 }
 
 } // namespace undula::fom

@@ -8,10 +8,12 @@
 namespace undula::fom {
 
 /// Throws InputError naming the keys that contradict each other; `where` names the scene in the message.
-/// The plan of a training is left out: other commands than train do not use it.
 void check_consistency(const Scene& scene, const std::string& where);
 
-/// The same for section [training] of a pump: for what trains, and for what checks scenes that state it.
+/// The same for the keys of [training], which campaigns alone use.
 void check_training(const Scene& scene, const std::string& where);
+
+/// Whether the scene states a key of [training] itself.
+bool states_training(const Scene& scene);
 
 } // namespace undula::fom

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <set>
@@ -86,6 +87,7 @@ public:
         check_scope(*known, path + " = " + seen_text(node), origin.at(key.source()));
         assign(*known, node, origin);
         given_.insert(path);
+        scene.places[path] = origin.at(key.source());
       } else {
         refuse_unknown(path, path + " = " + seen_text(node), node.is_table(), origin.at(key.source()));
       }
@@ -124,12 +126,11 @@ public:
       assign(*key, *table.get("value"), origin);
     }
     given_.insert(path);
+    scene.places[path] = origin.label;
   }
 
   /// Defaults for what was left out; refuses missing keys.
   void fill_defaults(const Origin& origin) {
-    scene.training.stated = std::any_of(
-        given_.begin(), given_.end(), [](const std::string& path) { return path.starts_with("training."); });
     for (const SceneKey& key : keys_of(scene)) {
       if (given_.contains(key.path)) {
         continue;
@@ -343,10 +344,15 @@ private:
                 wrong_type();
               }
               auto text = *entry.value<std::string>();
-              if constexpr (std::is_same_v<Type, FileListKey>)
+              if constexpr (std::is_same_v<Type, FileListKey>) {
                 typed.field(scene).push_back(existing_file(key, text, origin, where));
-              else
+              } else {
+                if (text.empty()) {
+                  refuse_value(key, "has a name that is empty", seen_text(node), where);
+                }
+                check_characters(key, text, ",\"'", where);
                 typed.field(scene).push_back(std::move(text));
+              }
             }
           } else if constexpr (std::is_same_v<Type, PositionKey>) {
             typed.field(scene) = position(key, node, typed.cgs_per_unit, where);
@@ -386,8 +392,8 @@ private:
     Position result{};
     for (std::size_t i = 0; i < 2; ++i) {
       result[i] = *pair->get(i)->value<double>() * cgs_per_unit;
-      if (!std::isfinite(result[i])) {
-        refuse_value(key, "has a point that is not finite", seen_text(node), where);
+      if (!(std::abs(result[i]) <= largest_coordinate * cgs_per_unit)) { // refuses nan as well
+        refuse_value(key, "has a point that is too far away", seen_text(node), where);
       }
     }
     return result;
@@ -410,6 +416,7 @@ private:
     if constexpr (std::is_same_v<Type, ChoiceKey>) {
       choose(key, typed, text, where);
     } else if constexpr (std::is_same_v<Type, NameKey>) {
+      check_characters(key, text, ",\"'", where);
       typed.field(scene) = text;
     } else if constexpr (std::is_same_v<Type, FileKey>) {
       typed.field(scene) = existing_file(key, text, origin, where);
@@ -417,7 +424,28 @@ private:
       if (text.empty()) {
         refuse_value(key, "is empty", in_quotes(text), where);
       }
+      check_characters(key, text, "", where);
+      constexpr std::size_t longest = 200;
+      if (text.size() > longest || text.front() == '.') {
+        refuse_value(key, text.front() == '.' ? "begins with a dot" : "is too long", in_quotes(text), where);
+      }
       typed.field(scene) = text;
+    }
+  }
+
+  /// Names become parts of file names, columns and scripts for gnuplot.
+  static void check_characters(const SceneKey& key, const std::string& text, std::string_view others,
+                               const std::string& where) {
+    for (const char c : text) {
+      const auto code = static_cast<unsigned char>(c);
+      if (code < 0x20 || code == 0x7f) {
+        char seen[8];
+        std::snprintf(seen, sizeof seen, "\\x%02x", code);
+        refuse_value(key, "has a control character", seen, where);
+      }
+      if (c == '/' || c == '\\' || others.find(c) != std::string_view::npos) {
+        refuse_value(key, "has a character that names must not have", in_quotes(text), where);
+      }
     }
   }
 
@@ -443,7 +471,8 @@ private:
     std::error_code ignored;
     const std::filesystem::path file = std::filesystem::weakly_canonical(origin.base / text, ignored);
     if (text.empty() || !std::filesystem::is_regular_file(file, ignored)) {
-      refuse_value(key, "names a file that does not exist", file.string(), where);
+      refuse_value(key, "names a file that does not exist",
+                   file.empty() ? (origin.base / text).string() : file.string(), where);
     }
     return file;
   }

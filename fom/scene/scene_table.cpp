@@ -46,10 +46,17 @@ std::vector<SceneKey> geometry_keys() {
       {"geometry.rim_gap_scale", "",
        "factor on the gap between the membrane's rim and the housing of the profile, by moving the rim",
        shapes_state, RealKey{FIELD(rim_gap_scale), 1, from_to(0.1, 10), 1.0}},
-      {"geometry.fluid_mesh", "", "Gmsh mesh of the fluid background, in place of a profile", shapes_state,
-       FileKey{FIELD(fluid_mesh)}},
-      {"geometry.solid_meshes", "", "Gmsh meshes of the solids, with `fluid_mesh`", shapes_state,
-       FileListKey{FIELD(solid_meshes)}},
+      {"geometry.fluid_mesh", "",
+       "Gmsh mesh of the fluid background, in place of a profile; the solids are not cut out of it; its "
+       "boundaries are named `inlet`, `outlet` and `axis` (r = 0), all others are walls",
+       shapes_state, FileKey{FIELD(fluid_mesh)}},
+      {"geometry.solid_meshes", "",
+       "Gmsh meshes of the solids, with `fluid_mesh`: first the membrane, then what moves with its holder",
+       shapes_state, FileListKey{FIELD(solid_meshes)}},
+      {"geometry.mesh_unit", "", "unit of length in the Gmsh meshes, all of them", shapes_state,
+       choice<FIELD(mesh_unit)>({name("cm", MeshUnit::cm), name("mm", MeshUnit::mm), name("um", MeshUnit::um),
+                                 name("m", MeshUnit::m), name("inch", MeshUnit::inch)},
+                                {}, "cm")},
   };
 }
 

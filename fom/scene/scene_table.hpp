@@ -53,7 +53,8 @@ struct ChoiceKey {
   std::string fallback;
 };
 
-/// Any non-empty text.
+/// A label that may become part of file names and of scripts: not empty, no control characters, no / and \,
+/// no . in front, at most 200 bytes.
 struct TextKey {
   std::function<std::string&(Scene&)> field;
 };
@@ -79,6 +80,9 @@ struct ExpressionPairKey {
   std::function<std::array<std::string, 2>&(Scene&)> field;
 };
 
+/// Coordinates of points, in mm, are not larger than this.
+inline constexpr double largest_coordinate = 1e6;
+
 /// A point, [1.0, 2.0]; the origin when the key is left out.
 struct PositionKey {
   std::function<Position&(Scene&)> field;
@@ -91,7 +95,7 @@ struct PositionListKey {
   double cgs_per_unit = 1;
 };
 
-/// Names in quotes; "" or none when the key is left out.
+/// Names in quotes, without control characters, commas, quotes, / and \; "" or none when the key is left out.
 struct NameKey {
   std::function<std::string&(Scene&)> field;
 };

@@ -65,7 +65,9 @@ std::string allowed_text(const SceneKey& key) {
             }
             return (choice.available.size() == 1 ? "" : "one of ") + text;
           },
-          [](const TextKey&) { return std::string("a text in quotes, not empty"); },
+          [](const TextKey&) {
+            return std::string("a text in quotes, not empty, without / and \\, at most 200 bytes");
+          },
           [](const FileKey&) { return std::string("the name of an existing file, in quotes"); },
           [](const FileListKey&) {
             return std::string("a list of names of existing files, [\"a.msh\", \"b.msh\"]");
@@ -74,10 +76,14 @@ std::string allowed_text(const SceneKey& key) {
           [](const ExpressionPairKey&) {
             return std::string("two expressions or numbers, [\"0\", \"2*t\"]");
           },
-          [](const PositionKey&) { return std::string("a point, [1.0, 2.0]"); },
-          [](const PositionListKey&) { return std::string("a list of points, [[0.0, 0.0], [1.0, 2.0]]"); },
-          [](const NameKey&) { return std::string("a name in quotes"); },
-          [](const NameListKey&) { return std::string("a list of names, [\"a\", \"b\"]"); }},
+          [](const PositionKey&) { return std::string("a point, [1.0, 2.0], within 1e6 mm of the origin"); },
+          [](const PositionListKey&) {
+            return std::string("a list of points, [[0.0, 0.0], [1.0, 2.0]], within 1e6 mm of the origin");
+          },
+          [](const NameKey&) { return std::string("a name in quotes, without commas, quotes, / and \\"); },
+          [](const NameListKey&) {
+            return std::string("a list of names, [\"a\", \"b\"], without commas, quotes, / and \\");
+          }},
       key.value);
 }
 

@@ -1,6 +1,10 @@
 #include "fom/scene/statement_checks.hpp"
 
+#include <cmath>
+
+#include "fom/scene/key_place.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "fom/scene/statement_geometry.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::fom {
@@ -178,8 +182,23 @@ void check_statement(const Scene& scene, const std::string& where) {
   check_observed(scene.problem, where);
   if (scene.time.end < scene.time.step) {
     throw InputError("the run ends before its first step", "end_s = " + shortest_number(scene.time.end),
-                     "at least step_s = " + shortest_number(scene.time.step), where + ", section [time]");
+                     "at least step_s = " + shortest_number(scene.time.step),
+                     place_of_key(scene, "time.end_s", where));
   }
+  if (const double steps = scene.time.end / scene.time.step; !(steps <= most_steps)) {
+    throw InputError("the run has too many time steps",
+                     shortest_number(std::round(steps)) + " steps, end_s = " +
+                         shortest_number(scene.time.end) + ", step_s = " + shortest_number(scene.time.step),
+                     "at most " + std::to_string(most_steps) + ", by a larger step or an earlier end",
+                     place_of_key(scene, "time.step_s", where));
+  }
+  if (scene.output.statistics_from >= scene.time.end) {
+    throw InputError("the window of the statistics begins after the run",
+                     "statistics_from_s = " + shortest_number(scene.output.statistics_from),
+                     "less than end_s = " + shortest_number(scene.time.end),
+                     place_of_key(scene, "output.statistics_from_s", where));
+  }
+  check_statement_geometry(scene, where);
 }
 
 } // namespace undula::fom

@@ -8,6 +8,9 @@
 
 namespace undula::fom {
 
+/// Steps of a run are counted by integers, and no run has a hundred million of them.
+inline constexpr int most_steps = 100'000'000;
+
 /// Names of the boundaries of the fluid: sides of the domain and holes.
 std::set<std::string> boundary_names(const ProblemStatement& problem);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -26,6 +28,10 @@ std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Opera
 /// Iterations of GMRES for which old factors are good enough. Factoring costs about ten of them; where it
 /// would serve a single iteration of Newton's method, patience ends earlier.
 constexpr int most_corrections = 200, most_newton_corrections = 25;
+
+/// Of the right-hand side. Direct solves leave 1e-10, where cuts leave tiny parts up to 1e-5; an answer to
+/// another system is wrong by more than all of it.
+constexpr double largest_residual = 1e-2;
 
 /// While it lives, MUMPS orders new factors by approximate minimum fill, unless an option says otherwise.
 /// Finding that order takes a fifth of the time of nested dissection, with a little more fill: right where a
@@ -138,6 +144,7 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
                                      columns.data()),
               "preallocating the system matrix");
   check_petsc(MatCreateVecs(matrix_.get(), solution_.out(), rhs_.out()), "creating vectors");
+  check_petsc(VecDuplicate(rhs_.get(), residual_.out()), "creating vectors");
   check_petsc(VecScatterCreateToAll(solution_.get(), gather_.out(), gathered_.out()), "creating the gather");
 
   const bool corrects = factor_every > 1 || operators.has_nonlinear_solid;
@@ -257,6 +264,24 @@ void LinearSystem<dim>::fill(Vec vector, const Eigen::VectorXd& values) {
 }
 
 template <int dim>
+void LinearSystem<dim>::check_residual(int step) {
+  // What the solver's own measure of convergence does not see: preonly never looks, and a preconditioner that
+  // hides a part of the system hides its residual as well.
+  double right_side = 0, left_over = 0;
+  check_petsc(MatMult(matrix_.get(), solution_.get(), residual_.get()), "checking the solution");
+  check_petsc(VecAYPX(residual_.get(), -1.0, rhs_.get()), "checking the solution");
+  check_petsc(VecNorm(residual_.get(), NORM_2, &left_over), "checking the solution");
+  check_petsc(VecNorm(rhs_.get(), NORM_2, &right_side), "checking the solution");
+  if (left_over <= largest_residual * right_side || !std::isfinite(left_over))
+    return; // solve() looks for nan
+  char seen[64];
+  std::snprintf(seen, sizeof seen, "a residual of %.2g of the right-hand side", left_over / right_side);
+  throw NumericsError("the linear solver's answer does not solve the system",
+                      "step " + std::to_string(step) + ": " + seen,
+                      "the default solver, without -fsi_ options, or a tighter -fsi_ksp_rtol");
+}
+
+template <int dim>
 Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, int iteration,
                                          const Eigen::VectorXd* guess) {
   const auto& index = operators_.ownership.petsc_index;
@@ -295,6 +320,7 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
     check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
   }
+  check_residual(step);
   check_petsc(
       VecScatterBegin(gather_.get(), solution_.get(), gathered_.get(), INSERT_VALUES, SCATTER_FORWARD),
       "gathering");

@@ -46,7 +46,8 @@ public:
   void replace_tangents(const std::vector<typename CellResponse<dim>::Derivatives>& tangents);
 
   /// Solves with the natural-order right-hand side (complete on every rank), solution complete on every rank.
-  /// Phases "factor" and "solve". Throws NumericsError on every rank if the solver fails or x is not finite.
+  /// Phases "factor" and "solve". Throws NumericsError on every rank if the solver fails, x is not finite, or
+  /// the true residual is not small, whatever the solver's options.
   /// `step` decides when to factor anew: the first step after a multiple of factor_every does, so that a
   /// restart from a state at such a multiple repeats the run. From Newton's second `iteration` of a step on
   /// the factors stay as long as GMRES gets on with them, from `guess` if one is given.
@@ -63,6 +64,7 @@ private:
   void sum_constant_terms(const SystemFactors& factors);
   void fill(Vec vector, const Eigen::VectorXd& values); ///< with this rank's share of them
   void write(std::vector<double>& values);              ///< puts 1 on the diagonal of constrained rows
+  void check_residual(int step);
 
   const Discretisation<dim>& disc_;
   const Operators<dim>& operators_;
@@ -76,7 +78,7 @@ private:
   const SparseMatrix* added_stiffness_ = nullptr;
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;
-  PetscVec rhs_, solution_, gathered_;
+  PetscVec rhs_, solution_, gathered_, residual_;
   PetscScatter gather_;
   PetscSolver solver_;
 };

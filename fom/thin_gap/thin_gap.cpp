@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fom/fom.hpp"
+#include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "fom/thin_gap/step_energy.hpp"
@@ -190,6 +191,7 @@ Observation observe(const ThinGapLayout& layout, const Scene& scene, const ThinG
 
 ThinGapModel prepare_thin_gap(const Scene& scene, PhaseTimer& timer) {
   const PumpProfile profile = scene_profile(scene);
+  check_pump_work(scene, profile);
   SimplexMesh<2> background;
   {
     const auto scope = timer.measure("mesh");

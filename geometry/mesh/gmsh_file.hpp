@@ -22,7 +22,7 @@ struct GmshElement {
 /// What Undula uses of a Gmsh file.
 struct GmshFile {
   std::map<std::pair<int, int>, std::string> physical_names; ///< (dimension, tag) -> name
-  std::map<long, Point<3>> nodes;                            ///< node tag -> coordinates, cm
+  std::map<long, Point<3>> nodes;                            ///< node tag -> coordinates
   std::vector<GmshElement> elements;
 };
 

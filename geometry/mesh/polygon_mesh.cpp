@@ -16,6 +16,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "geometry/mesh/mesh_estimate.hpp"
+#include "geometry/mesh/outline_faults.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::geometry {
@@ -48,7 +50,8 @@ public:
 
   class Is_bad {
   public:
-    Is_bad(const SizeField& size, double bound) : size_(&size), bound_(bound) {}
+    Is_bad(const SizeField& size, double bound, const Triangulation& mesh)
+        : size_(&size), bound_(bound), mesh_(&mesh) {}
 
     CGAL::Mesh_2::Face_badness operator()(const Quality& quality) const {
       if (quality.oversize > 1) return CGAL::Mesh_2::IMPERATIVELY_BAD;
@@ -56,6 +59,11 @@ public:
     }
 
     CGAL::Mesh_2::Face_badness operator()(const Triangulation::Face_handle& face, Quality& quality) const {
+      // Two cells per point. To count the faces, CGAL goes round the hull.
+      if (2 * mesh_->number_of_vertices() > most_cells)
+        throw InputError("a mesh would have too many cells", "more than " + std::to_string(most_cells),
+                         "a coarser size, or a shape without places that are narrow against it",
+                         "a polygon to mesh");
       std::array<Point<2>, 3> x;
       for (int i = 0; i < 3; ++i) x[i] = {face->vertex(i)->point().x(), face->vertex(i)->point().y()};
       std::array<double, 3> edge = {(x[1] - x[0]).squaredNorm(), (x[2] - x[1]).squaredNorm(),
@@ -72,18 +80,30 @@ public:
   private:
     const SizeField* size_;
     double bound_;
+    const Triangulation* mesh_;
   };
 
-  Criteria(const SizeField& size, double min_angle) : size_(&size) {
+  Criteria(const SizeField& size, double min_angle, const Triangulation& mesh) : size_(&size), mesh_(&mesh) {
     const double sine = std::sin(min_angle * std::numbers::pi / 180);
     bound_ = sine * sine;
   }
-  Is_bad is_bad_object() const { return {*size_, bound_}; }
+  Is_bad is_bad_object() const { return {*size_, bound_, *mesh_}; }
 
 private:
   const SizeField* size_;
   double bound_;
+  const Triangulation* mesh_;
 };
+
+/// Refinement comes to no end, or crashes, where the outline folds within the rounding of its coordinates.
+void check_narrow_places(const std::vector<Point<2>>& points, double extent, const std::string& where) {
+  const auto fault = outline_fault(points, narrowest_part * extent);
+  if (!fault) return;
+  std::ostringstream seen;
+  seen << fault->distance << " cm at (" << points[fault->first].transpose() << ") cm";
+  throw InputError("a polygon is too narrow somewhere to be meshed", seen.str(),
+                   "at least " + std::to_string(narrowest_part) + " of its extent", where);
+}
 
 void check(const TaggedPolygon& polygon) {
   std::vector<Kernel::Point_2> points;
@@ -95,6 +115,9 @@ void check(const TaggedPolygon& polygon) {
         "a polygon cannot be meshed", std::to_string(points.size()) + " points",
         "a simple counter-clockwise polygon with one tag per edge",
         polygon.names.empty() ? "polygon" : "polygon with boundary '" + polygon.names.front() + "'");
+  check_narrow_places(
+      polygon.points, largest_extent(polygon.points),
+      polygon.names.empty() ? "polygon" : "polygon with boundary '" + polygon.names.front() + "'");
 }
 
 /// A point inside a simple polygon: half-way between the first two crossings of a level between its corners.
@@ -133,6 +156,7 @@ std::vector<Point<2>> clockwise_hole(const TaggedHole& hole, const TaggedPolygon
       seen << "corner (" << x.x() << ", " << x.y() << ") cm";
       throw InputError("a hole is not inside of its polygon", seen.str(), "corners strictly inside", where);
     }
+  check_narrow_places(hole.points, largest_extent(outside.points), where);
   auto result = hole.points;
   if (CGAL::orientation_2(points.begin(), points.end(), Kernel()) == CGAL::COUNTERCLOCKWISE)
     std::reverse(result.begin(), result.end());
@@ -230,7 +254,7 @@ SimplexMesh<2> mesh_polygon(const TaggedPolygon& polygon, const SizeField& size,
       triangulation.insert_constraint(Kernel::Point_2(path[i].x(), path[i].y()),
                                       Kernel::Point_2(path[i + 1].x(), path[i + 1].y()));
 
-  const Criteria criteria(size, min_angle);
+  const Criteria criteria(size, min_angle, triangulation);
   if (seeds.empty())
     CGAL::refine_Delaunay_mesh_2(triangulation, criteria);
   else

@@ -34,8 +34,9 @@ using SizeField = std::function<double(const Point<2>&)>;
 /// cell's centroid, angles above `min_angle` (degrees; up to 20.7 proven, about 30 in practice) but where the
 /// polygon itself is sharper. The result depends on the input only; points follow a Hilbert curve and cells
 /// their first point, so neighbours are close in memory. Throws InputError when the polygon is not simple and
-/// counter-clockwise or a hole is not simple or not inside, NumericsError when refinement does not keep an
-/// edge of the polygon.
+/// counter-clockwise, a hole is not simple or not inside, one of them is narrower somewhere than
+/// `narrowest_part` of the extent, or the mesh would have more than `most_cells` cells, NumericsError when
+/// refinement does not keep an edge of the polygon.
 SimplexMesh<2> mesh_polygon(const TaggedPolygon& polygon, const SizeField& size, double min_angle);
 
 } // namespace undula::geometry

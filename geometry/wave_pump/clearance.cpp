@@ -6,22 +6,26 @@
 #include <string>
 #include <utility>
 
-#include "geometry/mesh/polygons.hpp"
+#include "geometry/mesh/sized_segments.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::geometry {
 
 namespace {
 
-using Segments = std::vector<Segment<2>>;
+using Segment = PlaneSegment;
+using Segments = std::vector<Segment>;
 
-Point<2> nearest_point(const Segment<2>& segment, const Point<2>& x) {
-  const auto& [a, b] = segment;
-  return a == b ? a : Point<2>(a + nearest_on_segment<2>(a, b, x) * (b - a));
+Point<2> nearest_point(const Segment& segment, const Point<2>& x) {
+  const Point<2> along = segment.b - segment.a;
+  const double squared_length = along.squaredNorm();
+  if (squared_length == 0) return segment.a;
+  const double s = std::clamp((x - segment.a).dot(along) / squared_length, 0.0, 1.0);
+  return segment.a + s * along;
 }
 
 Point<2> nearest_point(const Segments& segments, const Point<2>& x) {
-  Point<2> nearest = segments.front()[0];
+  Point<2> nearest = segments.front().a;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& segment : segments) {
     const Point<2> y = nearest_point(segment, x);
@@ -39,28 +43,52 @@ Segments open_line(const std::vector<Point<2>>& points) {
   return line;
 }
 
+Segments closed_line(const std::vector<Point<2>>& points) {
+  auto line = open_line(points);
+  line.push_back({points.back(), points.front()});
+  return line;
+}
+
 Segments operator+(Segments a, const Segments& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
+}
+
+/// Even-odd rule.
+bool inside(const Segments& outline, const Point<2>& x) {
+  bool odd = false;
+  for (const auto& [a, b] : outline)
+    if ((a.y() > x.y()) != (b.y() > x.y()) &&
+        x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      odd = !odd;
+  return odd;
 }
 
 struct Sides {
   explicit Sides(const PumpProfile& profile)
       : housing(open_line(profile.housing.points)),
         stator(open_line(profile.stator.points)),
-        membrane(polygon_sides(membrane_outline(profile.membrane))),
-        magnet(polygon_sides(profile.magnet.points)) {}
+        membrane(closed_line(membrane_outline(profile.membrane))),
+        magnet(closed_line(profile.magnet.points)) {}
   Segments housing, stator, membrane, magnet;
 };
 
+/// More of them would be gaps of hundreds of thousands of cells.
+constexpr std::size_t most_bridges = 200000;
+
 void bridge(const Segments& line, const Segments& other, double widest, double spacing,
             std::vector<GapBridge>& bridges) {
-  for (const auto& [a, b] : line) {
-    const double length = (b - a).norm();
+  for (const auto& segment : line) {
+    const double length = (segment.b - segment.a).norm();
     for (double s = 0;;) {
-      const Point<2> x = a + (s / length) * (b - a);
+      const Point<2> x = segment.a + (s / length) * (segment.b - segment.a);
       const GapBridge found{x, nearest_point(other, x)};
       if (found.width() < widest) bridges.push_back(found);
+      if (bridges.size() > most_bridges)
+        throw InputError("a gap of the pump is too narrow for so many elements across it",
+                         std::to_string(found.width()) + " cm wide at r = " + std::to_string(x.x()) +
+                             ", z = " + std::to_string(x.y()) + " cm",
+                         "fewer elements across gaps (mesh.gap_elements), or a wider gap", "mesh sizes");
       if (s >= length) break;
       // The width changes by no more than the way walked, so wide gaps are left in long steps.
       s = std::min(length, s + std::max(spacing * found.width(), found.width() - widest));
@@ -100,7 +128,7 @@ double local_clearance(const PumpProfile& profile, const Point<2>& x) {
   const Sides sides(profile);
   const double to_wall = (nearest_point(sides.housing + sides.stator, x) - x).norm();
   const double to_skin = (nearest_point(sides.membrane + sides.magnet, x) - x).norm();
-  const bool in_solid = inside_outline(sides.membrane, x) || inside_outline(sides.magnet, x);
+  const bool in_solid = inside(sides.membrane, x) || inside(sides.magnet, x);
   return to_wall + (in_solid ? -to_skin : to_skin);
 }
 
@@ -108,22 +136,18 @@ std::function<double(const Point<2>&)> pump_size_field(const PumpProfile& profil
                                                        const PumpMeshSizes& sizes) {
   check(sizes);
   // Bridges half an element apart: between two of them the field rises by growth / 4 of the size at most.
-  std::vector<std::pair<double, Segment<2>>> sources; // size along a bridge, bridge
+  std::vector<SizedSegment> sources;
   for (const auto& gap :
        gap_bridges(profile, sizes.gap_elements * sizes.channel_size, 0.5 / sizes.gap_elements))
-    sources.emplace_back(gap.width() / sizes.gap_elements, Segment<2>{gap.from, gap.to});
-  std::stable_sort(sources.begin(), sources.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+    sources.push_back({{gap.from, gap.to}, gap.width() / sizes.gap_elements, 0});
 
-  return
-      [sources = std::move(sources), growth = sizes.growth, largest = sizes.channel_size](const Point<2>& x) {
-        double size = largest;
-        for (const auto& [along, segment] : sources) {
-          if (along >= size) break; // sorted: the others ask for no less
-          size = std::min(size, along + growth * (nearest_point(segment, x) - x).norm());
-        }
-        return size;
-      };
+  return [gaps = SizedSegments(std::move(sources), sizes.growth),
+          largest = sizes.channel_size](const Point<2>& x) {
+    double size = largest;
+    int source = 0;
+    gaps.lower(x, size, source);
+    return size;
+  };
 }
 
 } // namespace undula::geometry

@@ -91,6 +91,39 @@ public:
     return curve;
   }
 
+  /// A number, or a table or list of them, that only people read.
+  void only_numbers(const toml::node& node, const std::string& key) const {
+    if (const auto* table = node.as_table()) {
+      for (const auto& [name, entry] : *table) only_numbers(entry, key + "." + std::string(name.str()));
+    } else if (const auto* list = node.as_array()) {
+      for (const auto& entry : *list) only_numbers(entry, key);
+    } else {
+      finite(node, key);
+    }
+  }
+
+  /// Numbers of a table within [materials].
+  void materials(const std::string& name, std::initializer_list<std::string_view> known,
+                 std::vector<ProfileStatement>& all) const {
+    const std::string prefix = "materials." + name;
+    const auto* node = root_.at_path(prefix).node();
+    if (node == nullptr) return;
+    if (!node->is_table())
+      throw InputError("'" + prefix + "' must be a table", text(*node), "numbers by name",
+                       place(file_, node->source()));
+    only(*node->as_table(), prefix + ".", known);
+    for (const auto& [key, entry] : *node->as_table()) {
+      const std::string full = prefix + "." + std::string(key.str());
+      const double value = finite(entry, full);
+      const bool poisson = key.str() == "poisson";
+      if (poisson ? !(value > -1 && value < 0.5) : !(value > 0))
+        throw InputError("'" + full + "' makes no sense", text(entry),
+                         poisson ? "a number between -1 and 0.5" : "a number > 0 (cgs)",
+                         place(file_, entry.source()));
+      all.push_back({full, value, static_cast<int>(entry.source().begin.line)});
+    }
+  }
+
 private:
   const toml::node& member(const toml::table& table, const std::string& prefix,
                            const std::string& key) const {
@@ -143,6 +176,17 @@ PumpProfile read_pump_profile(const std::filesystem::path& file) {
   const auto& magnet = reader.table("magnet");
   reader.only(magnet, "magnet.", {"polygon"});
   profile.magnet = reader.pairs(magnet, "magnet.", "polygon");
+
+  if (const auto* node = reader.root().get("materials")) {
+    const auto& table = reader.table("materials");
+    reader.only(table, "materials.", {"fluid", "membrane", "magnet"});
+    reader.only_numbers(*node, "materials");
+    reader.materials("fluid", {"density", "viscosity"}, profile.materials);
+    reader.materials("membrane", {"density", "young", "poisson"}, profile.materials);
+    reader.materials("magnet", {"density", "young", "poisson"}, profile.materials);
+  }
+  for (const char* name : {"operating_point", "published"})
+    if (const auto* node = reader.root().get(name)) reader.only_numbers(*node, name);
 
   check_pump_profile(profile);
   return profile;

@@ -26,6 +26,14 @@ struct MembraneProfile {
   int line = 0;            ///< of the table in the file
 };
 
+/// A number that a profile file states beside the geometry: of [materials]. Scenes state their own, which
+/// count; these are for comparison.
+struct ProfileStatement {
+  std::string key;  ///< "materials.fluid.density"
+  double value = 0; ///< cgs
+  int line = 0;
+};
+
 /// What a profile file describes. z = const at the inlet and the outlet; r = 0 is the axis of symmetry.
 struct PumpProfile {
   std::filesystem::path file; ///< empty if built in code
@@ -33,6 +41,7 @@ struct PumpProfile {
   ProfileCurve stator;        ///< inner wall from the axis (top) to the axis (bottom); ends at r = 0
   MembraneProfile membrane;
   ProfileCurve magnet; ///< closed polygon of either orientation, last point not repeated
+  std::vector<ProfileStatement> materials;
 };
 
 /// Thickness of the membrane at radius r (held constant beyond its ends), cm.
@@ -54,14 +63,16 @@ FluidOutline fluid_outline(const PumpProfile& profile);
 std::vector<Point<2>> membrane_outline(const MembraneProfile& membrane);
 
 /// Checks a profile with exact predicates on the given coordinates. Throws InputError (with file and line)
-/// when a curve has too few points, a negative radius, crosses itself or another curve, when a solid touches
-/// a wall, leaves the fluid domain or overlaps the other solid, or when thickness or clamp radius make no
-/// sense.
+/// when a curve has too few points, a negative radius, points beyond 1e4 cm, crosses itself or another curve,
+/// when a solid touches a wall, leaves the fluid domain or overlaps the other solid, when walls or solids are
+/// narrower somewhere than `narrowest_part` of the profile's extent, or when thickness or clamp radius make
+/// no sense.
 void check_pump_profile(const PumpProfile& profile);
 
 /// Reads and checks a profile (TOML, lengths in cm; see data/profiles/wave_pump_profile.toml).
-/// Throws InputError for a missing or malformed file, missing, unknown or mistyped keys, and all that
-/// check_pump_profile finds.
+/// [materials], [operating_point] and [published] may be left out; [materials] is kept for comparison with a
+/// scene, the others are for readers of the file. Throws InputError for a missing or malformed file, missing,
+/// unknown or mistyped keys, materials that make no sense, and all that check_pump_profile finds.
 PumpProfile read_pump_profile(const std::filesystem::path& file);
 
 } // namespace undula::geometry

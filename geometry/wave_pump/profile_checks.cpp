@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "geometry/mesh/outline_faults.hpp"
 #include "geometry/wave_pump/profile.hpp"
 #include "rom/base/error.hpp"
 
@@ -72,6 +73,10 @@ public:
     check_inside(membrane, fluid, outline.points);
     check_inside(magnet, fluid, outline.points);
     check_disjoint(membrane, magnet);
+    const double extent = largest_extent(outline.points);
+    check_width(fluid, extent);
+    check_width(membrane, extent);
+    check_width(magnet, extent);
   }
 
 private:
@@ -93,6 +98,11 @@ private:
       if (curve.points[i].x() < 0)
         throw InputError("a point of '" + curve.key + "' has a negative radius", text(curve.points[i]),
                          "r >= 0", where(line(curve, i)));
+    constexpr double farthest = 1e4; // cm
+    for (std::size_t i = 0; i < curve.points.size(); ++i)
+      if (!(curve.points[i].cwiseAbs().maxCoeff() <= farthest))
+        throw InputError("a point of '" + curve.key + "' is too far away", text(curve.points[i]) + " cm",
+                         "coordinates within 1e4 cm", where(line(curve, i)));
     for (std::size_t i = 1; i < curve.points.size(); ++i)
       if (curve.points[i] == curve.points[i - 1])
         throw InputError("'" + curve.key + "' repeats a point", text(curve.points[i]), "distinct points",
@@ -180,6 +190,22 @@ private:
               edges[i].text() + " and " + edges[j].text() + " (line " + std::to_string(edges[j].line) + ")",
               "a profile that neither crosses nor touches itself", where(edges[i].line));
       }
+  }
+
+  /// Meshes of narrower places than this have no end in double precision.
+  void check_width(const std::vector<Edge>& edges, double extent) const {
+    std::vector<Point<2>> corners;
+    for (const auto& edge : edges) corners.push_back(edge.from);
+    const auto fault = outline_fault(corners, narrowest_part * extent);
+    if (!fault) return;
+    const auto &a = edges[fault->first], &b = edges[fault->second];
+    const bool one = fault->first == fault->second;
+    throw InputError(one ? "an edge of the profile is too short to be meshed"
+                         : "two edges of the profile are too near to each other to be meshed",
+                     text(fault->distance) + " cm, " + a.text() +
+                         (one ? "" : " and " + b.text() + " (line " + std::to_string(b.line) + ")"),
+                     "at least " + text(narrowest_part * extent) + " cm, 1e-6 of the profile's extent",
+                     where(a.line));
   }
 
   void check_no_contact(const std::vector<Edge>& solid, const std::vector<Edge>& others) const {

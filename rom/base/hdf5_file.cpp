@@ -249,6 +249,9 @@ Hdf5File Hdf5File::open_unchecked(const std::filesystem::path& file) {
   if (id < 0) {
     std::error_code failure;
     const auto size = std::filesystem::file_size(file, failure);
+    if (const std::string reason = error_text(); reason.find("unable to lock") != std::string::npos)
+      throw InputError("the file is open in another program that may write to it", reason,
+                       "a file that no other program holds open for writing", file.string());
     throw InputError("not a readable HDF5 file", std::to_string(size) + " bytes: " + error_text(),
                      "a complete HDF5 file (this one is truncated, foreign or not readable)", file.string());
   }

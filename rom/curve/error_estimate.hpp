@@ -28,6 +28,12 @@ private:
   PeriodicSolver solver_;
 };
 
+/// Factor on an estimate calibrated inside of the box, at a point outside of it: with d the distance from the
+/// box in parts of its width in each direction, (1 + 10 d)^2, and infinity, that is unknown, beyond half a
+/// width or where the box has no width. No measurement stands behind the growth; it says that the estimate is
+/// worth less the farther the point is from every run that it was calibrated on.
+double growth_outside_box(const TrainingBox& box, double frequency_Hz, double stroke_mm, double head_mmHg);
+
 /// The estimate |error| <= safety * indicator + floor, and how well it does on points it was not fitted to.
 struct ErrorCalibration {
   double safety = 0;

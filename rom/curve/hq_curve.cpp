@@ -107,7 +107,8 @@ std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double st
     point.indicator_l_per_min = units::flow_to_l_per_min((*indicator)(stroke, heads[i], state));
     const double safety = point.error_calibrated ? model.error_safety : 1.0;
     point.error_l_per_min =
-        safety * point.indicator_l_per_min + model.error_floor_l_per_min + point.spread_l_per_min;
+        growth_outside_box(model.box, frequency_Hz, stroke_mm, point.head_mmHg) *
+        (safety * point.indicator_l_per_min + model.error_floor_l_per_min + point.spread_l_per_min);
   }
   return points;
 }

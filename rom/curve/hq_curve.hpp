@@ -24,7 +24,8 @@ struct HqPoint {
   double flow_l_per_min = 0;   ///< mean outflow over a period, positive out of the outlet
   double inflow_l_per_min = 0; ///< mean inflow over a period, positive into the inlet
   /// Estimated |error| of the flow against the full-order model: safety * indicator + floor of the model,
-  /// plus the spread. Infinity where the estimate failed, NaN where none was asked for.
+  /// plus the spread; outside of the training box times growth_outside_box. Infinity where the estimate
+  /// failed or the point is far outside, NaN where none was asked for.
   double error_l_per_min = 0;
   double indicator_l_per_min = 0; ///< |Q_N - Q_M|, see FlowIndicator
   bool error_calibrated = false;  ///< false: the model has no held-out calibration and safety = 1, floor = 0

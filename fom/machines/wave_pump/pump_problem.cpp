@@ -1,17 +1,22 @@
 #include "fom/machines/wave_pump/pump_problem.hpp"
 
 #include "fom/fom.hpp"
+#include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "geometry/mesh/gmsh_import.hpp"
 #include "geometry/wave_pump/profile_scale.hpp"
 #include "geometry/wave_pump/pump.hpp"
-#include "rom/base/error.hpp"
 
 namespace undula::fom {
 
 PumpProfile scene_profile(const Scene& scene) {
-  return scale_clearances(read_pump_profile(scene.profile), scene.clearance_scale, scene.rim_gap_scale);
+  auto profile =
+      scale_clearances(read_pump_profile(scene.profile), scene.clearance_scale, scene.rim_gap_scale);
+  if (scene.clamp_radius > 0)
+    check_clamp_radius(scene, profile.membrane.inner_radius, profile.membrane.outer_radius,
+                       "the membrane has");
+  return profile;
 }
 
 namespace {
@@ -26,11 +31,25 @@ PumpMeshes pump_meshes(const Scene& scene) {
   PumpMeshes meshes;
   meshes.clamp_radius = scene.clamp_radius;
   if (scene.profile.empty()) {
-    meshes.background = import_gmsh<2>(scene.fluid_mesh).mesh;
-    for (const auto& file : scene.solid_meshes) meshes.solids.push_back(import_gmsh<2>(file).mesh);
+    const double unit = mesh_unit_length(scene);
+    meshes.background = import_gmsh<2>(scene.fluid_mesh, unit).mesh;
+    for (const auto& file : scene.solid_meshes) meshes.solids.push_back(import_gmsh<2>(file, unit).mesh);
+    check_imported_meshes(scene, meshes.background, meshes.solids);
+    double inner = HUGE_VAL, outer = 0;
+    for (const auto& x : meshes.solids.front().points) {
+      inner = std::min(inner, x[0]);
+      outer = std::max(outer, x[0]);
+    }
+    check_clamp_radius(scene, inner, outer,
+                       "the membrane, mesh " + scene.solid_meshes.front().filename().string() + ", has");
     return meshes;
   }
-  const auto profile = scene_profile(scene);
+  auto profile = scene_profile(scene);
+  check_pump_work(scene, profile);
+  // The mesh keeps a line where the motion is imposed from.
+  const double clamp = scene.clamp_radius;
+  if (clamp > profile.membrane.inner_radius && std::abs(clamp - profile.membrane.clamp_radius) > 1e-9 * clamp)
+    profile.membrane.clamp_radius = clamp;
   const PumpMeshSizes sizes{scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
                             scene.mesh.growth};
   meshes.background = pump_background(profile, sizes, refinement_boxes(scene.problem));
@@ -58,11 +77,6 @@ FsiProblem<2> pump_problem(const Scene& scene) {
     }
     problem.boundary.emplace(name, condition);
   }
-  for (const char* opening : {inlet_name, outlet_name})
-    if (!problem.boundary.contains(opening))
-      throw InputError("the fluid mesh has no opening", std::string("no boundary named '") + opening + "'",
-                       "boundaries named 'inlet' and 'outlet'", scene.fluid_mesh.string());
-
   for (std::size_t s = 0; s < meshes.solids.size(); ++s) {
     SolidBody<2> body;
     body.mesh = std::move(meshes.solids[s]);

@@ -68,6 +68,51 @@ TEST(MeasuredCurve, FrequencyAndStrokeAreReadWhereTheFileStatesThem) {
   EXPECT_THROW(read_measured_curve(file), InputError);
 }
 
+TEST(MeasuredCurve, WhatSpreadsheetsWriteIsRead) {
+  const ScratchFolder folder;
+  const auto file = folder.path() / "data.csv";
+  const std::string plain = "# stroke_mm: 0.4\nhead_mmHg,flow_l_per_min\n40,3\n50,2\n60,0.3\n";
+  const auto as_utf16 = [&](bool little) {
+    std::string bytes = little ? "\xff\xfe" : "\xfe\xff";
+    for (const char c : plain) {
+      bytes += little ? std::string{c, '\0'} : std::string{'\0', c};
+    }
+    return bytes;
+  };
+  const std::vector<std::string> ways = {
+      plain,
+      "\xef\xbb\xbf" + plain,
+      as_utf16(true),
+      as_utf16(false),
+      "# stroke_mm = 0.4\r\n\"head_mmHg\",\"flow_l_per_min\"\r\n\"40\",\"3\"\r\n\"50\",2\r\n60,\"0.3\"\r\n",
+      "# stroke_mm = +0.4\nhead_mmHg,flow_l_per_min\n40,+3\n+50,2\n60,0.3\n",
+      "# stroke_mm = 0.4\n,\nhead_mmHg,flow_l_per_min\n,\n40,3\n50,2\n\"\",\"\"\n60,0.3\n,\n,\n"};
+  for (const std::string& bytes : ways) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    const MeasuredCurve curve = read_measured_curve(file);
+    EXPECT_EQ(curve.head_mmHg, (std::vector<double>{40, 50, 60})) << bytes;
+    EXPECT_EQ(curve.flow_l_per_min, (std::vector<double>{3, 2, 0.3})) << bytes;
+    EXPECT_EQ(curve.stroke_mm, 0.4) << bytes;
+  }
+  for (const char* row : {"40,+-3", "40,\"3", "40,++3", "40;3", "40,"}) {
+    std::ofstream(file, std::ios::binary) << plain << row << "\n";
+    EXPECT_THROW(read_measured_curve(file), InputError) << row;
+  }
+}
+
+TEST(MeasuredCurve, AnotherOperatingPointIsTold) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  EXPECT_EQ(other_operating_point(curve, "a.csv", "the model", 120, 0.53), "");
+  EXPECT_EQ(
+      other_operating_point(curve, "a.csv", "the model", 100, 0.53),
+      "a.csv was measured at another operating point: 120 Hz, stroke 0.53 mm; the model has 100 Hz, 0.53 mm");
+  EXPECT_NE(other_operating_point(curve, "a.csv", "the model", 120, 0.63), "");
+  MeasuredCurve bare = curve;
+  bare.frequency_Hz.reset();
+  bare.stroke_mm.reset();
+  EXPECT_EQ(other_operating_point(bare, "a.csv", "the model", 100, 0.1), "");
+}
+
 TEST(MeasuredCurve, ExtractionGivesTheFitAndTheNearestSample) {
   const MeasuredCurve curve = read_measured_curve(shipped);
   const std::vector<double> heads = {50};

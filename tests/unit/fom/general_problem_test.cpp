@@ -164,5 +164,12 @@ TEST(Expression, KnowsItsVariablesConstantsAndFunctions) {
   EXPECT_THROW(Expression("1/x", Space::plane, {}, "test")(0, 0, 0), NumericsError);
 }
 
+TEST(Expression, ComparesButAssignsNothing) {
+  for (const char* text : {"x = 20", "y=3", "t >= 1 && x = 2", "x == y = 2"})
+    EXPECT_THROW(Expression(text, Space::plane, {}, "test"), InputError) << text;
+  for (const char* text : {"x == 20", "x >= 2", "x <= 2", "x != 2", "x == 2 ? 1 : y >= 3"})
+    EXPECT_NO_THROW(Expression(text, Space::plane, {}, "test")) << text;
+}
+
 } // namespace
 } // namespace undula::fom

@@ -158,6 +158,55 @@ TEST(Gmsh, RefusesBoundariesWithoutAUniqueName) {
   EXPECT_NE(twice.find("two physical groups"), std::string::npos) << twice;
 }
 
+TEST(Gmsh, ReadsOtherUnitsOfLength) {
+  const auto in_cm = import_gmsh<2>(fixtures / "rectangle_41.msh").mesh;
+  const auto in_mm = import_gmsh<2>(fixtures / "rectangle_41.msh", 0.1).mesh;
+  ASSERT_EQ(in_mm.points.size(), in_cm.points.size());
+  for (std::size_t i = 0; i < in_mm.points.size(); ++i) EXPECT_EQ(in_mm.points[i], in_cm.points[i] * 0.1);
+  EXPECT_NE(message_of<2>(changed("rectangle_22.msh", "3 2 1 0\n", "3 2e9 1 0\n")).find("too far away"),
+            std::string::npos);
+}
+
+// Node 8, inside of the rectangle, is dragged: over its neighbours, then out of the rectangle.
+TEST(Gmsh, RefusesCellsThatLieOverOneAnother) {
+  const std::string node = "8 1.500000000002059 0.5 0";
+  EXPECT_EQ(message_of<2>(changed("rectangle_22.msh", node, "8 1.6 0.55 0")), "");
+  for (const auto* dragged : {"8 0.2 0.5 0", "8 1.5 1.4 0", "8 7 7 0"}) {
+    const auto message = message_of<2>(changed("rectangle_22.msh", node, dragged));
+    EXPECT_NE(message.find("lie over one another"), std::string::npos) << dragged << message;
+    EXPECT_NE(message.find("cells in lines"), std::string::npos) << message;
+  }
+}
+
+// A second rectangle, apart from the first by its nodes, lies across it or inside of it.
+TEST(Gmsh, RefusesMeshesThatLieOverOneAnother) {
+  const auto twice = [](double x, double y, double width, double height) {
+    auto text = std::string(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n1 1 \"wall\"\n$EndPhysicalNames\n"
+        "$Nodes\n8\n1 0 0 0\n2 4 0 0\n3 4 2 0\n4 0 2 0\n");
+    const double corner[4][2] = {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
+    for (int i = 0; i < 4; ++i)
+      text += std::to_string(5 + i) + " " + std::to_string(corner[i][0]) + " " +
+              std::to_string(corner[i][1]) + " 0\n";
+    text += "$EndNodes\n$Elements\n12\n";
+    int element = 0;
+    for (const int first : {1, 5}) {
+      for (int i = 0; i < 4; ++i)
+        text += std::to_string(++element) + " 1 2 1 1 " + std::to_string(first + i) + " " +
+                std::to_string(first + (i + 1) % 4) + "\n";
+      for (const int third : {2, 3})
+        text += std::to_string(++element) + " 2 2 2 1 " + std::to_string(first) + " " +
+                std::to_string(first + third - 1) + " " + std::to_string(first + third) + "\n";
+    }
+    const auto file = std::filesystem::path(testing::TempDir()) / "twice.msh";
+    std::ofstream(file) << text + "$EndElements\n";
+    return message_of<2>(file);
+  };
+  EXPECT_EQ(twice(5, 0, 1, 1), "");
+  EXPECT_NE(twice(3, 1, 3, 3).find("crosses or touches itself"), std::string::npos);
+  EXPECT_NE(twice(1, 0.5, 1, 1).find("lie over one another"), std::string::npos);
+}
+
 TEST(Gmsh, RefusesFlatCellsAndUnknownNodes) {
   const auto flat = message_of<2>(changed("rectangle_22.msh", "8 1.500000000002059 0.5 0", "8 2 0.5 0"));
   EXPECT_NE(flat.find("flat"), std::string::npos) << flat;

@@ -134,6 +134,12 @@ const BadProfile bad_profiles[] = {
     {"magnet_crosses_itself", 16, "crosses or touches itself"},
     {"magnet_in_membrane", 16, "overlap"},
     {"magnet_touches_membrane", 8, "crosses or touches the magnet"},
+    {"spike", 6, "too short to be meshed"},
+    {"leaf_of_atoms", 8, "too short to be meshed"},
+    {"far_away", 3, "too far away"},
+    {"negative_viscosity", 19, "'materials.fluid.viscosity' makes no sense"},
+    {"unknown_material", 19, "materials.fluid.densty"},
+    {"stroke_in_words", 19, "'operating_point.stroke' needs numbers"},
 };
 
 TEST(Profile, EveryBadProfileIsRefusedWithItsLine) {

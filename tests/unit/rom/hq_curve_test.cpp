@@ -120,6 +120,41 @@ TEST(HqCurve, ErrorIsSafetyTimesIndicatorPlusFloor) {
   EXPECT_TRUE(std::isnan(hq_curve(model, 100, 0.5, heads, without)[0].error_l_per_min));
 }
 
+TEST(HqCurve, TheErrorGrowsOutsideOfTheBoxUntilItIsUnknown) {
+  const auto model = synthetic_model(30);
+  const std::vector<double> heads = {10};
+  const auto error = [&](double frequency_Hz, double stroke_mm) {
+    return hq_curve(model, frequency_Hz, stroke_mm, heads)[0];
+  };
+  // The box: 80 to 140 Hz, 0.1 to 0.8 mm, 0 to 70 mmHg.
+  const auto near = error(146, 0.5);
+  EXPECT_DOUBLE_EQ(near.error_l_per_min, 4 * (2 * near.indicator_l_per_min + 0.125));
+  EXPECT_TRUE(std::isinf(error(2, 0.5).error_l_per_min));
+  EXPECT_TRUE(std::isinf(error(100, 3).error_l_per_min));
+}
+
+TEST(ErrorEstimate, GrowsWithTheDistanceFromTheBox) {
+  TrainingBox box;
+  box.frequency_low_Hz = 80;
+  box.frequency_high_Hz = 140;
+  box.stroke_low_mm = 0.1;
+  box.stroke_high_mm = 0.8;
+  box.head_low_mmHg = 0;
+  box.head_high_mmHg = 70;
+  EXPECT_EQ(growth_outside_box(box, 80, 0.8, 70 * (1 + 1e-12)), 1);
+  double last = 1;
+  for (const double off : {1.0, 5.0, 10.0, 20.0, 30.0}) {
+    const double growth = growth_outside_box(box, 140 + off, 0.5, 35);
+    EXPECT_GT(growth, last);
+    last = growth;
+  }
+  EXPECT_TRUE(std::isinf(growth_outside_box(box, 171, 0.5, 35)));
+  EXPECT_GT(growth_outside_box(box, 150, 0.5, 80), growth_outside_box(box, 150, 0.5, 35));
+  box.frequency_low_Hz = box.frequency_high_Hz = 120; // of one frequency nothing is known about another
+  EXPECT_TRUE(std::isinf(growth_outside_box(box, 121, 0.5, 35)));
+  EXPECT_EQ(growth_outside_box(box, 120, 0.5, 35), 1);
+}
+
 TEST(ErrorEstimate, IndicatorIsTheDifferenceToTheSmallerModel) {
   const auto o = synthetic_operators({20, 6, 4}, 30.0);
   const auto state = PeriodicSolver(o, 100, 96).solve(0.05, 2e4);

@@ -1,0 +1,128 @@
+#include "apps/input/scene_check.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "fom/levels/scene_problem.hpp"
+#include "fom/machines/wave_pump/pump_checks.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
+#include "fom/scene/general_observables.hpp"
+#include "fom/scene/scene_checks.hpp"
+#include "fom/scene/statement_geometry.hpp"
+#include "geometry/mesh/gmsh_import.hpp"
+#include "rom/base/error.hpp"
+
+namespace undula::apps {
+namespace {
+
+CheckedMesh checked(const std::string& name, const SimplexMesh<2>& mesh) {
+  CheckedMesh result;
+  result.name = name;
+  result.quality = mesh_quality(mesh);
+  result.low = result.high = mesh.points.empty() ? Point<2>(0, 0) : mesh.points.front();
+  for (const auto& x : mesh.points) {
+    result.low = result.low.cwiseMin(x);
+    result.high = result.high.cwiseMax(x);
+  }
+  return result;
+}
+
+/// Names of the boundaries where the flow is held.
+std::vector<std::string> wall_names(const FsiProblem<2>& problem) {
+  std::set<std::string> names;
+  for (const auto& facet : problem.background.boundary) {
+    const std::string& name = problem.background.boundary_names[static_cast<std::size_t>(facet.tag)];
+    const auto& condition = problem.boundary.at(name);
+    if (condition.kind == BoundaryCondition<2>::Kind::velocity && !condition.velocity) {
+      names.insert(name);
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+void add_files(const Scene& scene, SceneCheck& check) {
+  if (scene.fluid_mesh.empty()) {
+    return;
+  }
+  std::vector<std::filesystem::path> files = {scene.fluid_mesh};
+  files.insert(files.end(), scene.solid_meshes.begin(), scene.solid_meshes.end());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    check.meshes[i].file = files[i].filename().string();
+    check.meshes[i].reoriented = import_gmsh<2>(files[i], mesh_unit_length(scene)).reoriented_cells;
+    if (check.meshes[i].reoriented > 0) {
+      check.notes.push_back(std::to_string(check.meshes[i].reoriented) + " cells of " + check.meshes[i].file +
+                            " go round clockwise and were turned");
+    }
+  }
+  check.notes.push_back("the membrane is " + check.meshes[1].file +
+                        (files.size() > 2 ? "; the other solids move with its holder" : ""));
+}
+
+double estimated_cells(const Scene& scene) {
+  if (scene.problem.general) {
+    const StatedWork work = check_statement_geometry(scene, scene.file.string());
+    return work.fluid_cells + work.solid_cells;
+  }
+  if (scene.profile.empty()) {
+    return 0;
+  }
+  const PumpWork work = check_pump_work(scene, scene_profile(scene));
+  return work.fluid_cells + work.solid_cells;
+}
+
+/// A failure of the mesher or the cut, on one line.
+std::string on_one_line(const std::exception& error) {
+  std::string text = error.what();
+  for (std::size_t at = text.find("\n  "); at != std::string::npos; at = text.find("\n  ")) {
+    text.replace(at, 3, "; ");
+  }
+  return text;
+}
+
+SceneCheck mesh_and_cut(const Scene& scene) {
+  SceneCheck check;
+  if (states_training(scene)) {
+    check_training(scene, scene.file.string());
+  }
+  check.steps = last_step(scene);
+  check.estimated_cells = estimated_cells(scene);
+  check.notes = profile_differences(scene);
+  if (scene.space == Space::thin_gap) {
+    PhaseTimer timer;
+    const ThinGapModel model = prepare_thin_gap(scene, timer);
+    check.unknowns = unknowns(model);
+    check.thin_gap = model.layout;
+    return check;
+  }
+  FsiProblem<2> problem = scene_problem(scene);
+  check.meshes.push_back(checked("background", problem.background));
+  for (const SolidBody<2>& solid : problem.solids) {
+    check.meshes.push_back(checked(solid.name, solid.mesh));
+  }
+  add_files(scene, check);
+  check.walls = wall_names(problem);
+  if (problem.pin_pressure && !problem.background.cells.empty()) {
+    check.notes.emplace_back("no boundary is an opening: the pressure counts from one point of the fluid");
+  }
+  const Discretisation<2> disc = discretise(std::move(problem), CutOptions{});
+  check.unknowns = disc.unknowns();
+  if (scene.problem.general) {
+    plan_stated_observables(disc, scene);
+  }
+  return check;
+}
+
+} // namespace
+
+SceneCheck check_scene(const Scene& scene) {
+  try {
+    return mesh_and_cut(scene);
+  } catch (const NumericsError& error) {
+    // Nothing has been computed yet: what fails here is the geometry.
+    throw InputError("the geometry of the scene cannot be meshed and cut", on_one_line(error),
+                     "shapes without narrow places, bodies that neither touch nor cross each other",
+                     scene.file.string());
+  }
+}
+
+} // namespace undula::apps

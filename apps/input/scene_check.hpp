@@ -1,0 +1,36 @@
+// What `undula check` finds: everything that a run would do before its first step.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/apps.hpp"
+#include "fom/scene/scene.hpp"
+#include "fom/thin_gap/thin_gap.hpp"
+#include "geometry/mesh/mesh_quality.hpp"
+
+namespace undula::apps {
+
+struct CheckedMesh {
+  std::string name; ///< "background", or of the solid
+  std::string file; ///< of an imported mesh
+  MeshQuality quality;
+  Point<2> low, high; ///< cm, box around it
+  int reoriented = 0; ///< cells of the file that were turned round
+};
+
+struct SceneCheck {
+  double estimated_cells = 0;            ///< of all meshes, before they were made
+  std::vector<CheckedMesh> meshes;       ///< none for thin gaps
+  std::optional<ThinGapLayout> thin_gap; ///< of thin gaps
+  int unknowns = 0;                      ///< of one step
+  int steps = 0;                         ///< of a run
+  std::vector<std::string> walls;        ///< boundaries without a condition of their own
+  std::vector<std::string> notes;        ///< what is allowed, and better known
+};
+
+/// Meshes and cuts the scene at rest, and plans what it observes. Throws InputError for what is wrong.
+SceneCheck check_scene(const Scene& scene);
+
+} // namespace undula::apps
