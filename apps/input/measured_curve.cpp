@@ -15,8 +15,8 @@
 #include <tuple>
 #include <utility>
 
-#include "apps/output/text_table.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 namespace {
@@ -171,11 +171,11 @@ std::string other_operating_point(const MeasuredCurve& curve, const std::string&
     return "";
   }
   const auto stated = [](const std::optional<double>& value, const char* unit) {
-    return (value ? shortest(*value) : std::string("unstated")) + unit;
+    return (value ? exact_number(*value) : std::string("unstated")) + unit;
   };
   return file + " was measured at another operating point: " + stated(curve.frequency_Hz, " Hz") +
-         ", stroke " + stated(curve.stroke_mm, " mm") + "; " + what + " has " + shortest(frequency_Hz) +
-         " Hz, " + shortest(stroke_mm) + " mm";
+         ", stroke " + stated(curve.stroke_mm, " mm") + "; " + what + " has " + exact_number(frequency_Hz) +
+         " Hz, " + exact_number(stroke_mm) + " mm";
 }
 
 void warn_of_other_point(const MeasuredCurve& curve, const std::string& file, const std::string& what,

@@ -8,6 +8,7 @@
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/general_observables.hpp"
 #include "fom/scene/scene_checks.hpp"
+#include "fom/scene/scene_time.hpp"
 #include "fom/scene/statement_geometry.hpp"
 #include "geometry/mesh/gmsh_import.hpp"
 #include "rom/base/error.hpp"
@@ -107,7 +108,7 @@ SceneCheck mesh_and_cut(const Scene& scene) {
   const Discretisation<2> disc = discretise(std::move(problem), CutOptions{});
   check.unknowns = disc.unknowns();
   if (scene.problem.general) {
-    plan_stated_observables(disc, scene);
+    plan_general_observables(disc, scene);
   }
   return check;
 }

@@ -33,7 +33,7 @@ SimplexMesh<2> body_mesh(const BodyStatement& body, bool axisymmetric) {
   TaggedPolygon polygon;
   polygon.names = {"skin"};
   polygon.points = body_corners(body, axisymmetric);
-  if (twice_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
+  if (polygon_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
   polygon.tags.assign(polygon.points.size(), 0);
   if (body.shape.inner_radius > 0)
     polygon.holes.push_back({circle(body.shape.centre, body.shape.inner_radius, body.size), 0});

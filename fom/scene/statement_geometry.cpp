@@ -11,6 +11,7 @@
 #include "fom/scene/outlined_problem.hpp"
 #include "fom/scene/shape_outline.hpp"
 #include "geometry/mesh/outline_faults.hpp"
+#include "geometry/mesh/polygons.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
 
@@ -269,7 +270,7 @@ private:
   void add_fluid(OutlinedProblem& outlined) {
     const auto add = [&](std::vector<Point<2>> corners, bool counter_clockwise, const auto& name_of_edge) {
       const std::size_t n = corners.size();
-      const bool reverse = (twice_area(corners) > 0) != counter_clockwise;
+      const bool reverse = (polygon_area(corners) > 0) != counter_clockwise;
       for (std::size_t i = 0; i < n; ++i) {
         const auto &a = corners[i], &b = corners[(i + 1) % n];
         outlined.fluid.push_back(reverse ? PlaneSegment{b, a} : PlaneSegment{a, b});

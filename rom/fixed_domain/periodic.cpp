@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rom/base/error.hpp"
 #include "rom/fixed_domain/gmres.hpp"
@@ -130,10 +131,12 @@ PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::
   }
   if (found) {
     state.direct = state.converged = true;
-  } else if (options_.march_periods > 0) {
-    march({frequency_, stroke_cm, head}, state);
-  } else {
+  } else if (options_.march_periods == 0 || !march({frequency_, stroke_cm, head}, state)) {
     state.velocity = Eigen::MatrixXd::Zero(operators_.velocity_modes, 1);
+    state.y = Eigen::MatrixXd::Zero(operators_.mass.rows(), 1);
+    state.displacement = Eigen::MatrixXd::Zero(operators_.displacement_modes, 1);
+    if (options_.march_periods > 0) // asked for an answer, and there is none
+      state.mean_outflow = state.mean_inflow = std::numeric_limits<double>::quiet_NaN();
     return state;
   }
   state.mean_outflow = operators_.outflow.dot(state.velocity.col(0));
@@ -143,7 +146,7 @@ PeriodicState PeriodicSolver::solve(double stroke_cm, double head, const Eigen::
   return state;
 }
 
-void PeriodicSolver::march(const Drive& drive, PeriodicState& state) {
+bool PeriodicSolver::march(const Drive& drive, PeriodicState& state) try {
   constexpr double ramp_periods = 2;
   TimeMarch march(operators_, drive, steps_per_period_, ramp_periods);
   std::vector<double> means;
@@ -169,6 +172,10 @@ void PeriodicSolver::march(const Drive& drive, PeriodicState& state) {
   state.y = coefficients(march.trajectory());
   state.displacement = coefficients(march.displacement_trajectory());
   state.velocity = state.y.topRows(operators_.velocity_modes);
+  return true;
+} catch (const NumericsError&) { // a head or stroke beyond all reason
+  state.converged = false;
+  return false;
 }
 
 Eigen::MatrixXd PeriodicSolver::at_steps(const Eigen::MatrixXd& coefficients) const {

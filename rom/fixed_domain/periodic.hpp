@@ -29,7 +29,7 @@ struct PeriodicState {
   Eigen::MatrixXd velocity;     ///< nu x coefficients, see Harmonics: coefficients of a_u
   Eigen::MatrixXd y;            ///< N x coefficients: a_u, a_p, a_v
   Eigen::MatrixXd displacement; ///< nv x coefficients: a_d
-  double mean_outflow = 0;      ///< cm^3/s
+  double mean_outflow = 0;      ///< cm^3/s; nan where even the march broke down
   double mean_inflow = 0;       ///< cm^3/s
   bool converged = false;       ///< to the tolerance (direct), or periodic to march_tolerance (march)
   bool direct = false;          ///< false: the direct way failed or was not asked for, and this is the march
@@ -64,7 +64,7 @@ private:
                            Linearisation& at) const;
   void finish(const Eigen::MatrixXd& linear_state, const Eigen::MatrixXd& convective_force,
               PeriodicState& state) const;
-  void march(const Drive& drive, PeriodicState& state);
+  bool march(const Drive& drive, PeriodicState& state); ///< false: it broke down
 
   const Operators& operators_;
   double frequency_;

@@ -4,7 +4,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
-#include "training/campaign/periodic_run.hpp"
+#include "training/campaign/recorded_run.hpp"
 #include "training/reduction/projection.hpp"
 
 namespace undula::training {

@@ -182,7 +182,7 @@ TEST_F(NothingLost, AFullDiskIsOneMessageAndTheRunGoesOnAfterwards) {
 
 TEST_F(NothingLost, ResultsThatCannotBePrintedAreAFailure) {
   const auto model = write_small_model(folder.path()).string();
-  for (const std::string words :
+  for (const std::string& words :
        {"hq '" + model + "' --frequency 120 --stroke 0.53 --head 50,60 --json",
         std::string("check scene.toml"), std::string("solve scene.toml --output full --force"),
         std::string("--help")}) {

@@ -147,7 +147,7 @@ TEST_P(OneDoor, TheBandIsThatOfTheSameLevel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, OneDoor, testing::ValuesIn(cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 TEST(OneDoorModel, ValidateAndReportTakeTheFlowsOfHq) {
   const Words drive = {"--frequency", "120", "--stroke", "0.53"};

@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Levels, LevelFlows,
                                          std::pair("wave_pump_explicit", "0.2"),
                                          std::pair("wave_pump_mapped", "0.05"),
                                          std::pair("wave_pump_thin_gap", "0.2")),
-                         [](const auto& info) { return std::string(info.param.first); });
+                         [](const auto& one) { return std::string(one.param.first); });
 
 TEST(LevelCurve, ASecondHeadStartsFromRestOnAMovedDomainToo) {
   for (const auto& [name, stroke] :
