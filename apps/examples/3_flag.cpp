@@ -27,7 +27,8 @@ void swing(const char* file) {
                                              "body.flag.size_mm=20",
                                              "body.flag.fluid_size_mm=10",
                                              "time.step_s=0.01",
-                                             "time.end_s=0.8"};
+                                             "time.end_s=0.8",
+                                             "output.statistics_from_s=0"};
   const Scene scene = read_scene(file, settings);
 
   // 2. Meshes, the cut of the flag out of the channel, matrices.

@@ -71,7 +71,7 @@ TEST(Scene, AnOverrideAddsABoxOfRefinement) {
 TEST(Scene, TheResolvedSceneReadsBackBitForBit) {
   const Scene scene =
       with({"operating_point.stroke_mm=0.31415926535897931", "operating_point.head_mmHg=52.7182818",
-            "mesh.growth=0.1", "membrane.damping_time_s=1.1e-4", "name=quote \" and \\ slash"});
+            "mesh.growth=0.1", "membrane.damping_time_s=1.1e-4", "name=quote \" and hash #"});
   const std::string text = scene_to_toml(scene);
   const Scene again = parse_scene(text, "recorded", "/");
   Scene a = scene;
