@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fom/time/steady.hpp"
 #include "fom/time/reaction.hpp"
+#include "fom/time/steady.hpp"
 #include "tests/verification/support/cylinder_channel.hpp"
 #include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fom/time/steady.hpp"
 #include "fom/time/reaction.hpp"
+#include "fom/time/steady.hpp"
 #include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/steady_flow.hpp"

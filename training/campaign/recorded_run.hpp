@@ -10,8 +10,8 @@ namespace undula::training {
 
 /// The operating point of `scene` from rest (march_until_periodic), with snapshots of the last
 /// scene.training.sampled_periods periods. A NumericsError ends in a record of state `failed`. Collective
-/// over the communicator of the level; the record is complete on every rank. `after_step` is called after every step on
-/// every rank; what it throws, other than a NumericsError, ends the run without a record.
+/// over the communicator of the level; the record is complete on every rank. `after_step` is called after
+/// every step on every rank; what it throws, other than a NumericsError, ends the run without a record.
 RunRecord record_run(FiniteElementLevel& level, const Scene& scene, const AfterStep& after_step = {});
 
 /// Places of a field in the natural order of unknowns; the rows of its snapshots.
