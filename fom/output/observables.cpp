@@ -116,7 +116,7 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
   for (const auto& facet : disc.problem.background.boundary) {
     std::array<Point<dim>, dim> simplex;
     for (int a = 0; a < dim; ++a) simplex[a] = disc.problem.background.points[facet.points[a]];
-    plan.outline.push_back(simplex);
+    plan.outline.push_back({simplex[0], simplex[1]});
     const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[facet.tag]);
     if (condition.kind == BoundaryCondition<dim>::Kind::velocity) plan.walls.push_back(simplex);
   }

@@ -3,6 +3,7 @@
 
 #include "fom/coupling/motion_report.hpp"
 #include "fom/scene/general_observables.hpp"
+#include "geometry/mesh/segments.hpp"
 
 namespace undula::fom {
 
@@ -41,10 +42,10 @@ template <int dim>
 struct ObservationPlan {
   MembraneProbes probes;
   std::vector<int> skin_unknowns; ///< component 0 of the skin's nodes, counted from the solids' first unknown
-  std::vector<Point<dim>> skin_positions;           ///< at rest, cm
-  std::vector<std::array<Point<dim>, dim>> walls;   ///< boundary simplices with imposed velocity
-  std::vector<std::array<Point<dim>, dim>> outline; ///< all boundary simplices
-  GeneralObservables general;                       ///< empty but for scenes that state their problem
+  std::vector<Point<dim>> skin_positions;         ///< at rest, cm
+  std::vector<std::array<Point<dim>, dim>> walls; ///< boundary simplices with imposed velocity
+  std::vector<Segment<dim>> outline;              ///< all boundary simplices
+  GeneralObservables general;                     ///< empty but for scenes that state their problem
 };
 
 /// No probes for `probe_count` 0.

@@ -30,10 +30,9 @@ void orient(TaggedPolygon& polygon) {
   std::rotate(polygon.tags.begin(), polygon.tags.begin() + 1, polygon.tags.end());
 }
 
-double to_line(const PlaneSegment& segment, const Point<2>& x) {
-  const Point<2> along = segment.b - segment.a;
-  const double s = std::clamp((x - segment.a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (x - segment.a - s * along).norm();
+/// The distance that sizes of a general problem have always been measured by, to the last digit.
+double to_edge(const Segment<2>& edge, const Point<2>& x) {
+  return distance_to_segment<2>(edge.a, edge.b, x);
 }
 
 /// Edges that ask for a size; adds the keys that state them to `keys`.
@@ -87,7 +86,7 @@ FluidSize::FluidSize(const ProblemStatement& problem, const TaggedPolygon& domai
     : largest_(problem.domain.size),
       growth_(problem.domain.growth),
       keys_{"domain.size_mm"},
-      edges_(sized_edges(problem, domain, axisymmetric, keys_), growth_, to_line) {
+      edges_(sized_edges(problem, domain, axisymmetric, keys_), growth_, to_edge) {
   for (const auto& [name, box] : problem.refinements) {
     boxes_.push_back(
         {{point_of(box.box[0]), point_of(box.box[1]), box.size}, static_cast<int>(keys_.size())});

@@ -21,14 +21,14 @@ struct OutlinedSide {
 
 struct OutlinedBody {
   std::string name;
-  std::vector<PlaneSegment> outline; ///< with its holes
-  bool still = false;                ///< held as a whole and not moved
-  std::string where;                 ///< for messages
+  std::vector<Segment<2>> outline; ///< with its holes
+  bool still = false;              ///< held as a whole and not moved
+  std::string where;               ///< for messages
 };
 
 struct OutlinedProblem {
-  std::vector<PlaneSegment> fluid; ///< domain and holes, without the bodies; empty: solids in vacuo
-  std::vector<int> side;           ///< of each segment of `fluid`, an index into `sides`
+  std::vector<Segment<2>> fluid; ///< domain and holes, without the bodies; empty: solids in vacuo
+  std::vector<int> side;         ///< of each segment of `fluid`, an index into `sides`
   std::vector<OutlinedSide> sides;
   std::vector<OutlinedBody> bodies;
   std::string where; ///< of the domain, for messages

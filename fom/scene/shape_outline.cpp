@@ -55,7 +55,7 @@ std::vector<Point<2>> body_corners(const BodyStatement& body, bool axisymmetric)
     double nearest = on_circle ? HUGE_VAL : small;
     bool known = false;
     for (std::size_t i = 0; i < n && !known; ++i) {
-      const PlaneSegment side = {corners[i], corners[(i + 1) % n]};
+      const Segment<2> side = {corners[i], corners[(i + 1) % n]};
       known = segments_meet(side, {x, x}); // the mesher splits the edge there
       if (const double d = distance(side, x); d <= nearest) {
         nearest = d;

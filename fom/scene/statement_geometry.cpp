@@ -194,9 +194,9 @@ private:
   }
 
   static bool meet(const std::vector<Point<2>>& a, const std::vector<Point<2>>& b) {
-    auto edges = closed_polygon(a);
+    auto edges = polygon_sides(a);
     const std::size_t own = edges.size();
-    const auto others = closed_polygon(b);
+    const auto others = polygon_sides(b);
     edges.insert(edges.end(), others.begin(), others.end());
     bool found = false;
     visit_near_pairs(edges, 0, [&](std::size_t i, std::size_t j) {
@@ -254,10 +254,10 @@ private:
     for (const auto& [name, body] : problem_.bodies) {
       OutlinedBody one;
       one.name = name;
-      one.outline = closed_polygon(coarse(body.shape, body.size, true));
+      one.outline = polygon_sides(coarse(body.shape, body.size, true));
       if (body.shape.inner_radius > 0)
         for (const auto& edge :
-             closed_polygon(circle(body.shape.centre, body.shape.inner_radius, body.size, circle_corners)))
+             polygon_sides(circle(body.shape.centre, body.shape.inner_radius, body.size, circle_corners)))
           one.outline.push_back(edge);
       one.still = held_as_a_whole(name, body, one.outline) && body.displacement[0].empty();
       one.where = at("body." + name + (body.shape.radius > 0 ? ".radius_mm" : ".outline_mm"));
@@ -273,7 +273,7 @@ private:
       const bool reverse = (polygon_area(corners) > 0) != counter_clockwise;
       for (std::size_t i = 0; i < n; ++i) {
         const auto &a = corners[i], &b = corners[(i + 1) % n];
-        outlined.fluid.push_back(reverse ? PlaneSegment{b, a} : PlaneSegment{a, b});
+        outlined.fluid.push_back(reverse ? Segment<2>{b, a} : Segment<2>{a, b});
         outlined.side.push_back(side_of(outlined, name_of_edge(i)));
       }
     };
@@ -374,7 +374,7 @@ private:
   }
 
   bool held_as_a_whole(const std::string& name, const BodyStatement& body,
-                       const std::vector<PlaneSegment>& outline) const {
+                       const std::vector<Segment<2>>& outline) const {
     if (body.held.empty()) return false;
     const Expression held = expression(body.held);
     const auto at_point = [&](const Point<2>& x) {
@@ -510,7 +510,7 @@ private:
   const ProblemStatement& problem_;
   const std::string& name_;
   bool axisymmetric_;
-  std::vector<PlaneSegment> fluid_; ///< as in the outlined problem
+  std::vector<Segment<2>> fluid_; ///< as in the outlined problem
   std::vector<std::string> side_names_;
 };
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 
+#include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/segments.hpp"
 
 namespace undula::geometry {
@@ -20,15 +21,15 @@ std::optional<OutlineFault> repeated_corner(const std::vector<Point<2>>& corners
 }
 
 /// Whether two edges share more than the corner of neighbours.
-bool clash(const std::vector<PlaneSegment>& edges, std::size_t i, std::size_t j) {
+bool clash(const std::vector<Segment<2>>& edges, std::size_t i, std::size_t j) {
   const std::size_t n = edges.size();
-  const auto on = [](const PlaneSegment& edge, const Point<2>& x) { return segments_meet(edge, {x, x}); };
+  const auto on = [](const Segment<2>& edge, const Point<2>& x) { return segments_meet(edge, {x, x}); };
   if (j == i + 1) return on(edges[i], edges[j].b) || on(edges[j], edges[i].a);
   if (i == 0 && j == n - 1) return on(edges[i], edges[j].a) || on(edges[j], edges[i].b);
   return segments_meet(edges[i], edges[j]);
 }
 
-double gap(const PlaneSegment& a, const PlaneSegment& b) {
+double gap(const Segment<2>& a, const Segment<2>& b) {
   return std::min({distance(a, b.a), distance(a, b.b), distance(b, a.a), distance(b, a.b)});
 }
 
@@ -36,7 +37,7 @@ double gap(const PlaneSegment& a, const PlaneSegment& b) {
 
 std::optional<OutlineFault> outline_fault(const std::vector<Point<2>>& corners, double smallest) {
   if (auto fault = repeated_corner(corners)) return fault;
-  const auto edges = closed_polygon(corners);
+  const auto edges = polygon_sides(corners);
   const std::size_t n = edges.size();
   std::optional<OutlineFault> crossing, short_edge, narrow;
   const auto keep_first = [](std::optional<OutlineFault>& kept, const OutlineFault& found) {
@@ -81,7 +82,7 @@ bool surrounds(const std::vector<Point<2>>& corners, const Point<2>& x) {
 
 double distance_to_outline(const std::vector<Point<2>>& corners, const Point<2>& x) {
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& edge : closed_polygon(corners)) least = std::min(least, distance(edge, x));
+  for (const auto& edge : polygon_sides(corners)) least = std::min(least, distance(edge, x));
   return least;
 }
 

@@ -49,7 +49,7 @@ double overlap(double a_low, double a_high, double b_low, double b_high) {
 class Sweep {
 public:
   explicit Sweep(const std::vector<PlaneRegion>& regions) : regions_(static_cast<int>(regions.size())) {
-    std::vector<PlaneSegment> all;
+    std::vector<Segment<2>> all;
     Point<2> low = Point<2>::Constant(HUGE_VAL), high = -low;
     for (const auto& region : regions)
       for (const auto& segment : region) {
@@ -76,7 +76,7 @@ public:
   }
 
 private:
-  void collect_heights(const std::vector<PlaneSegment>& all) {
+  void collect_heights(const std::vector<Segment<2>>& all) {
     std::vector<double> heights;
     for (const auto& segment : all) {
       heights.push_back(segment.a.y());

@@ -10,7 +10,7 @@
 namespace undula::geometry {
 
 /// Points that an odd number of the closed lines made of these segments surround.
-using PlaneRegion = std::vector<PlaneSegment>;
+using PlaneRegion = std::vector<Segment<2>>;
 
 /// A part of the plane that hangs together and lies inside of the same regions everywhere.
 struct OverlayPart {

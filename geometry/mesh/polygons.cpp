@@ -1,5 +1,6 @@
 #include "geometry/mesh/polygons.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace undula::geometry {

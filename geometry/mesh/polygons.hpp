@@ -1,31 +1,13 @@
-// Segments and small polygons in floating point: distance, area, inside or outside, triangulation, overlap.
+// Small polygons in floating point: area, inside or outside, triangulation, overlap.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
 
-#include "geometry/mesh/simplex_mesh.hpp"
+#include "geometry/mesh/segments.hpp"
 
 namespace undula::geometry {
-
-/// From its first to its second end, cm.
-template <int dim>
-using Segment = std::array<Point<dim>, 2>;
-
-/// Where on the segment from a to b the point nearest to x lies: 0 at a, 1 at b. The segment needs a length.
-template <int dim>
-double nearest_on_segment(const Point<dim>& a, const Point<dim>& b, const Point<dim>& x) {
-  const Point<dim> along = b - a;
-  return std::clamp((x - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-}
-
-/// Distance (cm) of x to the segment from a to b, which needs a length.
-template <int dim>
-double distance_to_segment(const Point<dim>& a, const Point<dim>& b, const Point<dim>& x) {
-  return (x - a - nearest_on_segment<dim>(a, b, x) * (b - a)).norm();
-}
 
 /// The sides of a closed polygon, from each corner to the next.
 std::vector<Segment<2>> polygon_sides(const std::vector<Point<2>>& polygon);

@@ -7,29 +7,23 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-Kernel::Segment_2 exact(const PlaneSegment& segment) {
+Kernel::Segment_2 exact(const Segment<2>& segment) {
   return {Kernel::Point_2(segment.a.x(), segment.a.y()), Kernel::Point_2(segment.b.x(), segment.b.y())};
 }
 
 } // namespace
 
-double distance(const PlaneSegment& segment, const Point<2>& x) {
-  const Point<2> along = segment.b - segment.a;
-  const double squared_length = along.squaredNorm();
-  if (squared_length == 0) return (x - segment.a).norm();
-  const double s = std::clamp((x - segment.a).dot(along) / squared_length, 0.0, 1.0);
-  return (segment.a + s * along - x).norm();
+Point<2> nearest_point(const Segment<2>& segment, const Point<2>& x) {
+  const auto& [a, b] = segment;
+  return (b - a).squaredNorm() == 0 ? a : Point<2>(a + nearest_on_segment<2>(a, b, x) * (b - a));
 }
 
-bool segments_meet(const PlaneSegment& first, const PlaneSegment& second) {
+double distance(const Segment<2>& segment, const Point<2>& x) {
+  return (nearest_point(segment, x) - x).norm();
+}
+
+bool segments_meet(const Segment<2>& first, const Segment<2>& second) {
   return CGAL::do_intersect(exact(first), exact(second));
-}
-
-std::vector<PlaneSegment> closed_polygon(const std::vector<Point<2>>& corners) {
-  std::vector<PlaneSegment> segments;
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    segments.push_back({corners[i], corners[(i + 1) % corners.size()]});
-  return segments;
 }
 
 } // namespace undula::geometry

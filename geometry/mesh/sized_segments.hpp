@@ -8,14 +8,14 @@
 namespace undula::geometry {
 
 struct SizedSegment {
-  PlaneSegment segment;
+  Segment<2> segment;
   double size = 0; ///< cm, on the segment
   int source = 0;  ///< what it came from, for messages
 };
 
-using DistanceFunction = double (*)(const PlaneSegment&, const Point<2>&);
+using DistanceFunction = double (*)(const Segment<2>&, const Point<2>&);
 
-inline double distance_to(const PlaneSegment& segment, const Point<2>& x) { return distance(segment, x); }
+inline double distance_to(const Segment<2>& segment, const Point<2>& x) { return distance(segment, x); }
 
 /// size + growth * distance, least over all segments. Found by a tree of boxes, equal bit for bit to trying
 /// all of them.

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/sized_segments.hpp"
 #include "rom/base/error.hpp"
 
@@ -13,18 +14,9 @@ namespace undula::geometry {
 
 namespace {
 
-using Segment = PlaneSegment;
-using Segments = std::vector<Segment>;
+using Segments = std::vector<Segment<2>>;
 
-Point<2> nearest_point(const Segment& segment, const Point<2>& x) {
-  const Point<2> along = segment.b - segment.a;
-  const double squared_length = along.squaredNorm();
-  if (squared_length == 0) return segment.a;
-  const double s = std::clamp((x - segment.a).dot(along) / squared_length, 0.0, 1.0);
-  return segment.a + s * along;
-}
-
-Point<2> nearest_point(const Segments& segments, const Point<2>& x) {
+Point<2> nearest_of(const Segments& segments, const Point<2>& x) {
   Point<2> nearest = segments.front().a;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& segment : segments) {
@@ -43,33 +35,17 @@ Segments open_line(const std::vector<Point<2>>& points) {
   return line;
 }
 
-Segments closed_line(const std::vector<Point<2>>& points) {
-  auto line = open_line(points);
-  line.push_back({points.back(), points.front()});
-  return line;
-}
-
 Segments operator+(Segments a, const Segments& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
-}
-
-/// Even-odd rule.
-bool inside(const Segments& outline, const Point<2>& x) {
-  bool odd = false;
-  for (const auto& [a, b] : outline)
-    if ((a.y() > x.y()) != (b.y() > x.y()) &&
-        x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      odd = !odd;
-  return odd;
 }
 
 struct Sides {
   explicit Sides(const PumpProfile& profile)
       : housing(open_line(profile.housing.points)),
         stator(open_line(profile.stator.points)),
-        membrane(closed_line(membrane_outline(profile.membrane))),
-        magnet(closed_line(profile.magnet.points)) {}
+        membrane(polygon_sides(membrane_outline(profile.membrane))),
+        magnet(polygon_sides(profile.magnet.points)) {}
   Segments housing, stator, membrane, magnet;
 };
 
@@ -82,7 +58,7 @@ void bridge(const Segments& line, const Segments& other, double widest, double s
     const double length = (segment.b - segment.a).norm();
     for (double s = 0;;) {
       const Point<2> x = segment.a + (s / length) * (segment.b - segment.a);
-      const GapBridge found{x, nearest_point(other, x)};
+      const GapBridge found{x, nearest_of(other, x)};
       if (found.width() < widest) bridges.push_back(found);
       if (bridges.size() > most_bridges)
         throw InputError("a gap of the pump is too narrow for so many elements across it",
@@ -126,9 +102,9 @@ std::vector<GapBridge> gap_bridges(const PumpProfile& profile, double widest, do
 
 double local_clearance(const PumpProfile& profile, const Point<2>& x) {
   const Sides sides(profile);
-  const double to_wall = (nearest_point(sides.housing + sides.stator, x) - x).norm();
-  const double to_skin = (nearest_point(sides.membrane + sides.magnet, x) - x).norm();
-  const bool in_solid = inside(sides.membrane, x) || inside(sides.magnet, x);
+  const double to_wall = (nearest_of(sides.housing + sides.stator, x) - x).norm();
+  const double to_skin = (nearest_of(sides.membrane + sides.magnet, x) - x).norm();
+  const bool in_solid = inside_outline(sides.membrane, x) || inside_outline(sides.magnet, x);
   return to_wall + (in_solid ? -to_skin : to_skin);
 }
 

@@ -11,6 +11,7 @@
 #include "fom/scene/scene_table.hpp"
 #include "geometry/mesh/mesh_estimate.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
+#include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/refinement_box.hpp"
 #include "geometry/wave_pump/pump.hpp"
 #include "rom/base/error.hpp"
@@ -48,8 +49,8 @@ RadialRange radial_range(const SimplexMesh<2>& mesh) {
   return range;
 }
 
-std::vector<PlaneSegment> boundary_of(const SimplexMesh<2>& mesh) {
-  std::vector<PlaneSegment> edges;
+std::vector<Segment<2>> boundary_of(const SimplexMesh<2>& mesh) {
+  std::vector<Segment<2>> edges;
   for (const auto& facet : mesh.boundary)
     edges.push_back({mesh.points[facet.points[0]], mesh.points[facet.points[1]]});
   return edges;
@@ -145,7 +146,7 @@ PumpWork check_pump_work(const Scene& scene, const PumpProfile& profile) {
     return smallest;
   };
   constexpr double most = 100.0 * most_cells;
-  const auto overlay = lay_over({closed_polygon(fluid_outline(profile).points)});
+  const auto overlay = lay_over({polygon_sides(fluid_outline(profile).points)});
   const auto fluid =
       estimate_cells(overlay.pieces, size_at, sizes.growth, static_cast<int>(keys.size()), most);
   PumpWork work;
@@ -154,7 +155,7 @@ PumpWork check_pump_work(const Scene& scene, const PumpProfile& profile) {
   std::string key = keys[static_cast<std::size_t>(worst - fluid.by_source.begin())];
   if (scene.space != Space::thin_gap) {
     const auto solids =
-        lay_over({closed_polygon(membrane_outline(profile.membrane)), closed_polygon(profile.magnet.points)});
+        lay_over({polygon_sides(membrane_outline(profile.membrane)), polygon_sides(profile.magnet.points)});
     for (const auto& piece : solids.pieces) {
       const bool membrane = solids.parts[piece.part].inside[0] != 0;
       const double growth = membrane ? 0.1 : 0.0; // the membrane's size follows its thickness

@@ -9,13 +9,14 @@
 #include "geometry/mesh/mesh_estimate.hpp"
 #include "geometry/mesh/mesh_quality.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
+#include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/sized_segments.hpp"
 
 namespace undula::geometry {
 namespace {
 
 PlaneRegion box(double left, double low, double right, double high) {
-  return closed_polygon({{left, low}, {right, low}, {right, high}, {left, high}});
+  return polygon_sides({{left, low}, {right, low}, {right, high}, {left, high}});
 }
 
 PlaneRegion disc(double x, double y, double radius, int corners = 100) {
@@ -24,7 +25,7 @@ PlaneRegion disc(double x, double y, double radius, int corners = 100) {
     const double angle = 2 * std::numbers::pi * k / corners;
     points.emplace_back(x + radius * std::cos(angle), y + radius * std::sin(angle));
   }
-  return closed_polygon(points);
+  return polygon_sides(points);
 }
 
 double area_in(const PlaneOverlay& overlay, const std::vector<char>& inside) {
@@ -86,7 +87,7 @@ TEST(CellEstimate, IsThatOfTheMeshToAThird) {
     polygon.points = {{0, 0}, {4, 0}, {4, 3}, {0, 3}};
     polygon.tags = {0, 0, 0, 0};
     polygon.names = {"side"};
-    const auto overlay = lay_over({closed_polygon(polygon.points)});
+    const auto overlay = lay_over({polygon_sides(polygon.points)});
     const auto estimate = estimate_cells(
         overlay.pieces,
         [&](const Point<2>& x) {

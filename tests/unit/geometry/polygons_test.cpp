@@ -20,7 +20,7 @@ TEST(Polygons, ThePointNearestOnASegmentIsItsFootOrAnEnd) {
 TEST(Polygons, AnOutlineWithAHoleHoldsWhatLiesBetween) {
   auto sides = polygon_sides({{0, 0}, {6, 0}, {6, 6}, {0, 6}});
   ASSERT_EQ(sides.size(), 4u);
-  EXPECT_EQ(sides.back()[1], Point<2>(0, 0));
+  EXPECT_EQ(sides.back().b, Point<2>(0, 0));
   for (const auto& side : polygon_sides({{2, 2}, {2, 4}, {4, 4}, {4, 2}})) sides.push_back(side);
   EXPECT_TRUE(inside_outline(sides, {1, 1}));
   EXPECT_TRUE(inside_outline(sides, {1, 3}));
