@@ -88,6 +88,16 @@ bool is_first_process() {
   return true;
 }
 
+void run_alone(const std::vector<std::string>& petsc_options, const std::function<void(MPI_Comm)>& work) {
+  if (!petsc_options.empty()) {
+    throw InputError("options for PETSc do not go with a reduced model", '"' + petsc_options.front() + '"',
+                     "options for PETSc after -- with a scene (.toml)", "the command line");
+  }
+  if (is_first_process()) {
+    work(MPI_COMM_NULL);
+  }
+}
+
 void run_parallel(const std::vector<std::string>& petsc_options, const std::function<void(MPI_Comm)>& work) {
   if (!petsc_options.empty() && !petsc_options.front().starts_with('-')) {
     throw InputError("an argument too many", '"' + petsc_options.front() + '"',

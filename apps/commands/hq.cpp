@@ -20,10 +20,10 @@
 #include "apps/input/head_list.hpp"
 #include "apps/input/level_source.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/curve_progress.hpp"
 #include "apps/output/curve_report.hpp"
 #include "apps/output/curve_warnings.hpp"
 #include "apps/output/gnuplot.hpp"
-#include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
@@ -127,24 +127,9 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
   }
 
   // 2. The periodic state at every head, on a level prepared once.
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
   PhaseTimer timer;
   const auto level = prepare(source, comm, timer);
-  std::vector<CurvePoint> points;
-  {
-    std::optional<Progress> progress;
-    if (rank == 0) {
-      progress.emplace("hq", static_cast<long>(heads.size()));
-    }
-    long done = 0;
-    points = level->curve(scene, heads, [&] {
-      ++done;
-      if (progress) {
-        progress->update(done);
-      }
-    });
-  }
+  const std::vector<CurvePoint> points = curve_with_progress("hq", *level, scene, heads, comm);
 
   // 3. What the tolerances of the inputs do to it; what stands beside it.
   std::optional<UncertaintyBand> band;
@@ -223,7 +208,11 @@ void add_hq_command(CLI::App& app) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("petsc", options->petsc, "options for PETSc, after -- (scenes)");
-  command->callback([options] { run_parallel(options->petsc, [&](MPI_Comm comm) { hq(*options, comm); }); });
+  command->callback([options] {
+    const bool models_alone =
+        !is_scene(options->file) && (options->beside.empty() || !is_scene(options->beside));
+    (models_alone ? run_alone : run_parallel)(options->petsc, [&](MPI_Comm comm) { hq(*options, comm); });
+  });
 }
 
 } // namespace undula::apps

@@ -3,6 +3,7 @@
 //   undula report data/scenes/wave_pump_thin_gap.toml data/models/wave_pump_fixed.h5
 //     --data data/measured/corwave_120hz_0.53mm.csv --frequency 120 --stroke 0.53 --plot report.png
 //   undula report data/scenes/wave_pump_thin_gap.toml --vary thin_gap.cells=32,64,128 --data ...
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -200,8 +201,10 @@ void add_report_command(CLI::App& app) {
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("--petsc", options->petsc, "options for PETSc")->allow_extra_args(false);
-  command->callback(
-      [options] { run_parallel(options->petsc, [&](MPI_Comm comm) { report(*options, comm); }); });
+  command->callback([options] {
+    const bool scenes = std::ranges::any_of(options->files, is_scene);
+    (scenes ? run_parallel : run_alone)(options->petsc, [&](MPI_Comm comm) { report(*options, comm); });
+  });
 }
 
 } // namespace undula::apps

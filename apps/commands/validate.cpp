@@ -16,10 +16,10 @@
 #include "apps/input/level_source.hpp"
 #include "apps/input/validation.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/curve_progress.hpp"
 #include "apps/output/curve_warnings.hpp"
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/plots.hpp"
-#include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
@@ -122,22 +122,8 @@ void run(const ValidateOptions& options, MPI_Comm comm) {
   const auto level = prepare(source, comm, timer);
 
   // 3. The periodic state at those heads; every flow is a mean over its last periods.
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  std::vector<CurvePoint> points;
-  {
-    std::optional<Progress> progress;
-    if (rank == 0) {
-      progress.emplace("validate", static_cast<long>(comparison.heads.size()));
-    }
-    long done = 0;
-    points = level->curve(scene, comparison.heads, [&] {
-      ++done;
-      if (progress) {
-        progress->update(done);
-      }
-    });
-  }
+  const std::vector<CurvePoint> points =
+      curve_with_progress("validate", *level, scene, comparison.heads, comm);
 
   // 4. Compare.
   on_root(comm, [&] {
@@ -186,7 +172,10 @@ void add_validate_command(CLI::App& app) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("petsc", options->petsc, "of a scene: options for PETSc, after --");
-  command->callback([options] { run_parallel(options->petsc, [&](MPI_Comm comm) { run(*options, comm); }); });
+  command->callback([options] {
+    (is_scene(options->file) ? run_parallel : run_alone)(options->petsc,
+                                                         [&](MPI_Comm comm) { run(*options, comm); });
+  });
 }
 
 } // namespace undula::apps

@@ -10,7 +10,8 @@
 namespace undula::fom {
 
 /// Runs `task` on rank 0. If it throws, every rank throws: rank 0 the same exception, the others one of the
-/// same kind (InputError, else NumericsError) that refers to it. Collective.
+/// same kind (InputError, else NumericsError) that refers to it. A process without MPI, which has
+/// MPI_COMM_NULL for a communicator, is its own root. Collective.
 void on_root(MPI_Comm comm, const std::function<void()>& task);
 
 /// Copies the state of rank 0 to every rank, where the vectors have the same sizes. Collective.

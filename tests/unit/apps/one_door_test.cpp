@@ -190,6 +190,7 @@ TEST(OneDoorModel, RefusesWhatOnlyASceneStates) {
   };
   refused({"--set", "mesh.gap_elements=2"}, "no keys to override");
   refused({"--band"}, "--band");
+  refused({"--", "-log_view"}, "options for PETSc");
 }
 
 TEST(OneDoorRefusals, TrainRefusesBeforeTheFirstRunWhatItWouldLeaveOut) {
