@@ -13,6 +13,7 @@
 #include "fom/output/checkpoint.hpp"
 #include "fom/output/time_series.hpp"
 #include "tests/unit/apps/run_undula.hpp"
+#include "tests/unit/apps/small_scene.hpp"
 #include "tests/unit/apps/test_model.hpp"
 
 namespace undula::apps {
@@ -20,45 +21,9 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// A channel with a soft post in it, small enough for milliseconds per step.
-constexpr const char* small_scene = R"(name = "post"
-
-[model]
-space = "plane"
-
-[domain]
-outline_mm = [[0.0, 0.0], [40.0, 0.0], [40.0, 10.0], [0.0, 10.0]]
-sides = ["lower", "outlet", "upper", "inlet"]
-size_mm = 2.5
-
-[boundary.inlet]
-kind = "velocity"
-velocity_cm_per_s = ["ramp(t,0.1)*y*(10-y)/25", "0"]
-
-[boundary.outlet]
-kind = "opening"
-stress = "traction"
-
-[fluid]
-density_g_per_cm3 = 1.0
-viscosity_poise = 0.1
-
-[body.post]
-outline_mm = [[19.0, -2.0], [21.0, -2.0], [21.0, 5.0], [19.0, 5.0]]
-size_mm = 1.0
-density_g_per_cm3 = 1.1
-young_dyn_per_cm2 = 1e6
-poisson = 0.4
-held = "y <= 0"
-
-[time]
-step_s = 0.01
-end_s = 0.1
-)";
-
 class NothingLost : public testing::Test {
 protected:
-  void SetUp() override { std::ofstream(folder.path() / "scene.toml") << small_scene; }
+  void SetUp() override { write_small_scene(folder.path() / "scene.toml"); }
 
   Outcome solve(const Words& more, const char* output = "run") const {
     Words words = {"solve", "scene.toml", "--output", output};

@@ -7,6 +7,7 @@
 #include "apps/output/gnuplot.hpp"
 #include "rom/base/error.hpp"
 #include "tests/unit/apps/run_undula.hpp"
+#include "tests/unit/apps/small_scene.hpp"
 #include "tests/unit/apps/test_model.hpp"
 
 namespace undula::apps {
@@ -18,38 +19,9 @@ const std::string root = UNDULA_SOURCE_DIR;
 const std::string thin_gap = root + "/data/scenes/wave_pump_thin_gap.toml";
 const std::string measured = root + "/data/measured/corwave_120hz_0.63mm.csv";
 
-/// A channel that a few steps suffice for.
-const std::string channel = R"toml(name = "channel"
-[model]
-space = "plane"
-[domain]
-outline_mm = [[0.0, 0.0], [40.0, 0.0], [40.0, 10.0], [0.0, 10.0]]
-sides = ["lower", "outlet", "upper", "inlet"]
-size_mm = 2.5
-[boundary.inlet]
-kind = "velocity"
-velocity_cm_per_s = ["ramp(t, 0.1)*y*(10 - y)/25", "0"]
-[boundary.outlet]
-kind = "opening"
-[fluid]
-density_g_per_cm3 = 1.0
-viscosity_poise = 0.1
-[body.leaf]
-outline_mm = [[19.0, -2.0], [21.0, -2.0], [21.0, 5.0], [19.0, 5.0]]
-size_mm = 1.0
-density_g_per_cm3 = 1.1
-young_dyn_per_cm2 = 1e6
-poisson = 0.4
-held = "y <= 0"
-[time]
-step_s = 0.01
-end_s = 0.05
-)toml";
-
+/// Five steps of the small scene.
 std::string write_channel(const ScratchFolder& folder) {
-  const auto file = folder.path() / "channel.toml";
-  std::ofstream(file) << channel;
-  return file.string();
+  return write_small_scene(folder.path() / "channel.toml", "0.05");
 }
 
 void expect_told(const Outcome& outcome, const std::string& text) {
@@ -194,7 +166,15 @@ TEST(NothingSilent, TheOthersThatMpirunStartsPrintNothing) {
       model + "' --frequency 120 --stroke 0.5 --head 50 --json >out.txt 2>err.txt";
   ASSERT_EQ(std::system(command.c_str()), 0) << text_of(folder.path() / "err.txt");
   EXPECT_EQ(occurrences(text_of(folder.path() / "out.txt"), "\"model\""), 1);
-  setenv("OMPI_COMM_WORLD_RANK", "1", 1); // of a command without MPI
+  for (const char* rank : {"0", "1"}) { // of commands without MPI
+    setenv("OMPI_COMM_WORLD_RANK", rank, 1);
+    const Outcome outcome = run_undula(
+        {"hq", model, "--frequency", "120", "--stroke", "0.5", "--head", "50", "--json"}, folder.path());
+    unsetenv("OMPI_COMM_WORLD_RANK");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(occurrences(outcome.out, "\"model\""), rank[0] == '0' ? 1 : 0);
+  }
+  setenv("OMPI_COMM_WORLD_RANK", "1", 1);
   const Outcome other =
       run_undula({"check", UNDULA_SOURCE_DIR "/data/scenes/wave_pump_thin_gap.toml"}, folder.path());
   unsetenv("OMPI_COMM_WORLD_RANK");
