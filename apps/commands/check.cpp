@@ -17,6 +17,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::apps {
@@ -87,14 +88,14 @@ std::string layout_tables(const ThinGapLayout& layout) {
   }
   std::vector<std::vector<std::string>> passage_rows;
   for (const auto& [name, passage] : passages(layout)) {
-    passage_rows.push_back(
-        {name, shortest(passage->inertance), shortest(passage->resistance), shortest(passage->area)});
+    passage_rows.push_back({name, plain_number(passage->inertance), plain_number(passage->resistance),
+                            plain_number(passage->area)});
   }
   return text_table({"node", "radius (mm)", "plate (mm)", "gap above (mm)", "gap below (mm)"}, rows) + "\n" +
          text_table({"passage", "inertance (1/cm)", "resistance (1/cm^3)", "area (cm^2)"}, passage_rows) +
          "\n" + std::to_string(layout.radius.size()) + " nodes, " +
          decimals(units::length_to_mm(layout.step), 3) + " mm apart; holder area " +
-         shortest(layout.holder_area) + " cm^2\n";
+         plain_number(layout.holder_area) + " cm^2\n";
 }
 
 nlohmann::ordered_json point_in_mm(const Point<2>& x) {

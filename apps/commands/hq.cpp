@@ -27,6 +27,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/calibration/scene_flows.hpp"
 #include "training/calibration/uncertainty.hpp"
@@ -64,7 +65,7 @@ void warn_of_other_runs(const RecordedCurve& runs, const std::string& file, doub
                         double stroke_mm) {
   if (!same_setting(runs.frequency_Hz, frequency_Hz) || !same_setting(runs.stroke_mm, stroke_mm)) {
     spdlog::warn("{} holds runs of another operating point, {} Hz, stroke {} mm, which are not drawn", file,
-                 shortest(runs.frequency_Hz), shortest(runs.stroke_mm));
+                 plain_number(runs.frequency_Hz), plain_number(runs.stroke_mm));
   }
 }
 

@@ -23,6 +23,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 namespace {
@@ -94,8 +95,9 @@ LevelResult read_runs(const ReportOptions& options, const std::string& file, std
   if (!same_setting(curve.frequency_Hz, options.frequency_Hz) ||
       !same_setting(curve.stroke_mm, options.stroke_mm)) {
     throw InputError("recorded runs belong to another operating point",
-                     shortest(curve.frequency_Hz) + " Hz, " + shortest(curve.stroke_mm) + " mm",
-                     shortest(options.frequency_Hz) + " Hz, " + shortest(options.stroke_mm) + " mm", file);
+                     plain_number(curve.frequency_Hz) + " Hz, " + plain_number(curve.stroke_mm) + " mm",
+                     plain_number(options.frequency_Hz) + " Hz, " + plain_number(options.stroke_mm) + " mm",
+                     file);
   }
   LevelResult result;
   result.level = "full order, recorded";

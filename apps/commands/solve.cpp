@@ -27,6 +27,7 @@
 #include "fom/scene/scene_reference.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 namespace {
@@ -66,9 +67,9 @@ SolvedRun summary(const Scene& scene, const RunDirectory& output, int unknowns, 
 std::string statistics_text(const std::vector<ColumnStatistics>& statistics) {
   std::vector<std::vector<std::string>> rows;
   for (const ColumnStatistics& one : statistics) {
-    rows.push_back({one.column, shortest(one.last), shortest(one.mean), shortest(one.amplitude),
-                    one.oscillations == 0 ? "-" : shortest(one.frequency_Hz), shortest(one.mean_change),
-                    shortest(one.amplitude_change)});
+    rows.push_back({one.column, plain_number(one.last), plain_number(one.mean), plain_number(one.amplitude),
+                    one.oscillations == 0 ? "-" : plain_number(one.frequency_Hz),
+                    plain_number(one.mean_change), plain_number(one.amplitude_change)});
   }
   return text_table(
       {"column", "last", "mean", "amplitude", "frequency (Hz)", "change of mean", "change of amplitude"},

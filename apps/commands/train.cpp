@@ -22,6 +22,7 @@
 #include "fom/scene/scene_reference.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/replaced_file.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
 #include "training/reduction/build_model.hpp"
@@ -41,8 +42,8 @@ struct TrainOptions {
 };
 
 std::string point_text(const OperatingPoint& point) {
-  return shortest(point.frequency) + " Hz, " + shortest(units::length_to_mm(point.stroke)) + " mm, " +
-         shortest(units::pressure_to_mmHg(point.head)) + " mmHg";
+  return plain_number(point.frequency) + " Hz, " + plain_number(units::length_to_mm(point.stroke)) + " mm, " +
+         plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
 }
 
 std::string mode_text(const TrainedModel& trained) {
@@ -65,7 +66,7 @@ std::string mode_text(const TrainedModel& trained) {
 std::string run_text(const TrainedModel& trained) {
   std::vector<std::vector<std::string>> rows;
   for (const rom::ReferencePoint& run : trained.model.references) {
-    rows.push_back({run.held_out ? "held out" : "training", shortest(run.frequency_Hz),
+    rows.push_back({run.held_out ? "held out" : "training", plain_number(run.frequency_Hz),
                     decimals(run.stroke_mm, 3), decimals(run.head_mmHg, 2), decimals(run.flow_l_per_min, 4),
                     decimals(run.rom_flow_l_per_min, 4), decimals(100 * run.velocity_error, 3),
                     decimals(100 * run.envelope_error, 3), decimals(run.fom_seconds, 1)});

@@ -23,6 +23,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::apps {
@@ -132,7 +133,7 @@ void run(const ValidateOptions& options, MPI_Comm comm) {
     for (const CurvePoint& point : points) {
       if (!std::isfinite(point.flow_l_per_min)) {
         throw NumericsError("a head has no flow to compare: " + point.reason,
-                            shortest(point.head_mmHg) + " mmHg",
+                            plain_number(point.head_mmHg) + " mmHg",
                             "other heads with --head, or a smaller step");
       }
       flows.push_back(point.flow_l_per_min);
@@ -141,8 +142,8 @@ void run(const ValidateOptions& options, MPI_Comm comm) {
     std::cout << (options.json ? json_text(validation, comparison.curve.fit) : table_text(validation));
     if (!options.picture.empty()) {
       plot(options.picture, comparison.curve, validation,
-           level->name() + ": " + shortest(scene.operating_point.frequency) + " Hz, stroke " +
-               shortest(units::length_to_mm(scene.operating_point.stroke)) + " mm");
+           level->name() + ": " + plain_number(scene.operating_point.frequency) + " Hz, stroke " +
+               plain_number(units::length_to_mm(scene.operating_point.stroke)) + " mm");
     }
   });
 }

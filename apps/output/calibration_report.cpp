@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string number_or(double value, const std::string& otherwise) {
-  return std::isfinite(value) ? shortest(value) : otherwise;
+  return std::isfinite(value) ? plain_number(value) : otherwise;
 }
 
 /// Name of the data without folders.
@@ -31,8 +31,8 @@ std::string key_table(const CalibrationReport& report) {
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
     const FreeKey& key = report.keys[i];
     const auto at = static_cast<Eigen::Index>(i);
-    rows.push_back({key.key, shortest(key.low) + " to " + shortest(key.high), shortest(calibration.start[at]),
-                    shortest(calibration.optimum[at]),
+    rows.push_back({key.key, plain_number(key.low) + " to " + plain_number(key.high),
+                    plain_number(calibration.start[at]), plain_number(calibration.optimum[at]),
                     number_or(calibration.identified.standard_error[at], "not fixed"),
                     calibration.at_bound[i] ? "yes" : "no"});
   }
@@ -61,8 +61,8 @@ std::string sensitivity_table(const CalibrationReport& report) {
     for (std::size_t i = 0; i < report.keys.size(); ++i) {
       const FreeKey& key = report.keys[i];
       const double mean = mean_sensitivity(report.calibration.curves[c], i);
-      rows.push_back(
-          {short_name(report.targets[c]), key.key, shortest(mean), shortest(mean * (key.high - key.low))});
+      rows.push_back({short_name(report.targets[c]), key.key, plain_number(mean),
+                      plain_number(mean * (key.high - key.low))});
     }
   }
   return text_table(
@@ -119,7 +119,7 @@ std::vector<std::string> statements(const CalibrationReport& report) {
 std::string join(const Eigen::VectorXd& values) {
   std::string text;
   for (const double value : values) {
-    text += (text.empty() ? "" : ", ") + shortest(value);
+    text += (text.empty() ? "" : ", ") + plain_number(value);
   }
   return text;
 }
@@ -235,19 +235,20 @@ std::string calibrated_scene_text(const CalibrationReport& report, const std::fi
   for (std::size_t c = 0; c < report.targets.size(); ++c) {
     const TargetCurve& target = report.targets[c];
     const CalibratedCurve& curve = report.calibration.curves[c];
-    text += "# data: " + short_name(target) + " (" + shortest(target.frequency_Hz) + " Hz, " +
-            shortest(target.stroke_mm) + " mm) at " + std::to_string(target.head_mmHg.size()) +
-            " heads from " + shortest(target.head_mmHg.front()) + " to " + shortest(target.head_mmHg.back()) +
-            " mmHg; rms of computed - measured " + decimals(curve.start_rms_l_per_min, 4) +
-            " l/min before, " + decimals(curve.optimum_rms_l_per_min, 4) + " after; scatter of the data " +
+    text += "# data: " + short_name(target) + " (" + plain_number(target.frequency_Hz) + " Hz, " +
+            plain_number(target.stroke_mm) + " mm) at " + std::to_string(target.head_mmHg.size()) +
+            " heads from " + plain_number(target.head_mmHg.front()) + " to " +
+            plain_number(target.head_mmHg.back()) + " mmHg; rms of computed - measured " +
+            decimals(curve.start_rms_l_per_min, 4) + " l/min before, " +
+            decimals(curve.optimum_rms_l_per_min, 4) + " after; scatter of the data " +
             decimals(target.scatter_l_per_min, 4) + "\n";
   }
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
     const FreeKey& key = report.keys[i];
     const auto at = static_cast<Eigen::Index>(i);
-    text += "# free: " + key.key + " in " + shortest(key.low) + " to " + shortest(key.high) + ", from " +
-            shortest(report.calibration.start[at]) + " to " + shortest(report.calibration.optimum[at]) +
-            ", standard error " +
+    text += "# free: " + key.key + " in " + plain_number(key.low) + " to " + plain_number(key.high) +
+            ", from " + plain_number(report.calibration.start[at]) + " to " +
+            plain_number(report.calibration.optimum[at]) + ", standard error " +
             number_or(report.calibration.identified.standard_error[at], "not fixed by the data") +
             (report.calibration.at_bound[i] ? ", at an end of its range" : "") + "\n";
   }
@@ -273,7 +274,8 @@ bool plot_calibration(const std::filesystem::path& picture, const CalibrationRep
     const TargetCurve& target = report.targets[c];
     const CalibratedCurve& curve = report.calibration.curves[c];
     const std::string colour = std::string(" lc rgb '") + colours[c % colours.size()] + "'";
-    const std::string at = shortest(target.frequency_Hz) + " Hz, " + shortest(target.stroke_mm) + " mm";
+    const std::string at =
+        plain_number(target.frequency_Hz) + " Hz, " + plain_number(target.stroke_mm) + " mm";
     add(measured[c].flow_l_per_min, measured[c].head_mmHg, "points pt 6 ps 0.7" + colour, at + ", measured");
     add(curve.start_l_per_min, target.head_mmHg, "lines dt 2 lw 1.5" + colour, at + ", before");
     add(curve.optimum_l_per_min, target.head_mmHg, "linespoints pt 7 ps 0.8 lw 2" + colour,

@@ -6,6 +6,7 @@
 
 #include "apps/output/plots.hpp"
 #include "apps/output/text_table.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::apps {
@@ -132,7 +133,7 @@ std::string sensitivity_table(const CurveReport& report) {
   // 2. One row per input: change of the flow at value + tolerance / value - tolerance.
   std::vector<std::string> header = {"input", "value", "tolerance"};
   for (const std::size_t i : shown) {
-    header.push_back("+/- at " + shortest(report.points[i].head_mmHg) + " mmHg (l/min)");
+    header.push_back("+/- at " + plain_number(report.points[i].head_mmHg) + " mmHg (l/min)");
   }
   const auto signed_number = [](double value) {
     return std::isfinite(value) ? (value >= 0 ? "+" : "") + decimals(value, 3) : std::string("unknown");
@@ -140,7 +141,7 @@ std::string sensitivity_table(const CurveReport& report) {
   std::vector<std::vector<std::string>> rows;
   std::string notes;
   for (const InputEffect& input : report.band->inputs) {
-    rows.push_back({input.key, shortest(input.value), shortest(input.tolerance)});
+    rows.push_back({input.key, plain_number(input.value), plain_number(input.tolerance)});
     for (const std::size_t i : shown) {
       rows.back().push_back(signed_number(input.up[i]) + " / " + signed_number(input.down[i]));
     }
@@ -268,8 +269,8 @@ bool plot_curve_report(const std::filesystem::path& picture, const CurveReport& 
   if (report.measured != nullptr) {
     point_sets.push_back({"measured", report.measured->head_mmHg, report.measured->flow_l_per_min});
   }
-  const std::string title = report.scene.name + ": " + shortest(report.scene.operating_point.frequency) +
-                            " Hz, stroke " + shortest(stroke_mm(report.scene)) + " mm";
+  const std::string title = report.scene.name + ": " + plain_number(report.scene.operating_point.frequency) +
+                            " Hz, stroke " + plain_number(stroke_mm(report.scene)) + " mm";
   const char* band = report.band != nullptr ? "by tolerances of the inputs (95 %)" : "error estimate";
   return plot_hq_curve(picture, title, {report.level, head, flow, error, band}, point_sets);
 }

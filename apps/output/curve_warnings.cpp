@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/output/text_table.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 
@@ -19,7 +20,7 @@ void warn_of_curve(const Level& level, const Scene& scene, std::span<const Curve
   }
   for (const CurvePoint& point : points) {
     if (!point.periodic) {
-      spdlog::warn("{}: no periodic state at {} mmHg: {}", level.name(), shortest(point.head_mmHg),
+      spdlog::warn("{}: no periodic state at {} mmHg: {}", level.name(), plain_number(point.head_mmHg),
                    point.reason);
     }
   }
@@ -27,7 +28,7 @@ void warn_of_curve(const Level& level, const Scene& scene, std::span<const Curve
     if (point.clearance_min_mm < 0) {
       spdlog::warn(
           "{}: at {} mmHg the membrane passes through a wall by {} mm: the flow is not that of a pump",
-          level.name(), shortest(point.head_mmHg), decimals(-point.clearance_min_mm, 3));
+          level.name(), plain_number(point.head_mmHg), decimals(-point.clearance_min_mm, 3));
     }
   }
 }

@@ -9,6 +9,7 @@
 #include "apps/output/curve_report.hpp"
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/text_table.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 namespace {
@@ -48,8 +49,8 @@ std::string level_report_table(const LevelReport& report) {
   for (const LevelResult& result : report.results) {
     const CurveDifference data = curve_difference(result.flow, report.measured);
     rows.push_back({std::to_string(index++) + " " + result.level, result.source,
-                    std::to_string(result.unknowns), shortest(result.seconds_per_point), number(data.rms, 3),
-                    number(data.largest, 3), number(to_reference(report, result).rms, 3),
+                    std::to_string(result.unknowns), plain_number(result.seconds_per_point),
+                    number(data.rms, 3), number(data.largest, 3), number(to_reference(report, result).rms, 3),
                     result.reference < 0 ? "-" : std::to_string(result.reference + 1)});
   }
   return text_table({"level", "source", "unknowns", "s per point", "rms to data (l/min)", "largest (l/min)",
@@ -57,7 +58,7 @@ std::string level_report_table(const LevelReport& report) {
                     rows) +
          "data: " + report.data_file + ", scatter " + decimals(report.scatter_l_per_min, 3) +
          " l/min about its fit; " + std::to_string(report.head_mmHg.size()) + " heads from " +
-         shortest(report.head_mmHg.front()) + " to " + shortest(report.head_mmHg.back()) + " mmHg\n";
+         plain_number(report.head_mmHg.front()) + " to " + plain_number(report.head_mmHg.back()) + " mmHg\n";
 }
 
 std::string level_report_json(const LevelReport& report) {
@@ -97,8 +98,8 @@ bool plot_level_report(const std::filesystem::path& picture, const LevelReport& 
   for (const LevelResult& result : report.results) {
     const CurveDifference data = curve_difference(result.flow, report.measured);
     if (data.points > 0) {
-      blocks[result.level] +=
-          shortest(result.seconds_per_point) + " " + shortest(data.rms) + " " + std::to_string(index) + "\n";
+      blocks[result.level] += plain_number(result.seconds_per_point) + " " + plain_number(data.rms) + " " +
+                              std::to_string(index) + "\n";
       fastest = std::min(fastest, result.seconds_per_point);
       slowest = std::max(slowest, result.seconds_per_point);
     }
@@ -117,16 +118,16 @@ bool plot_level_report(const std::filesystem::path& picture, const LevelReport& 
              " using 1:2:3 with labels offset 1,0.7 notitle, \\\n  ";
     ++block;
   }
-  const std::string scatter = shortest(report.scatter_l_per_min);
-  const std::string title = "Speed against error: " + shortest(report.frequency_Hz) + " Hz, stroke " +
-                            shortest(report.stroke_mm) + " mm";
+  const std::string scatter = plain_number(report.scatter_l_per_min);
+  const std::string title = "Speed against error: " + plain_number(report.frequency_Hz) + " Hz, stroke " +
+                            plain_number(report.stroke_mm) + " mm";
   return draw_picture(picture, data,
                       "set title " + gnuplot_string(title) +
                           "\nset xlabel 'seconds per operating point'"
                           "\nset ylabel 'rms error of the flow against the data (l/min)'"
                           "\nset logscale xy\nset grid\nset key outside below\nset xrange [" +
-                          shortest(fastest / 5) + ":" + shortest(slowest * 5) + "]\nplot \\\n  " + items +
-                          scatter + " with lines dt 2 lc rgb 'gray' title 'scatter of the data'\n");
+                          plain_number(fastest / 5) + ":" + plain_number(slowest * 5) + "]\nplot \\\n  " +
+                          items + scatter + " with lines dt 2 lc rgb 'gray' title 'scatter of the data'\n");
 }
 
 } // namespace undula::apps

@@ -6,6 +6,7 @@
 
 #include "apps/output/plots.hpp"
 #include "apps/output/text_table.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::apps {
@@ -108,7 +109,7 @@ void plot_membrane(const std::filesystem::path& folder, const TimeSeries& membra
   for (int k = 0; k < phases_drawn; ++k) {
     const int after = (k + 1) * steps_per_period / phases_drawn; // steps since the period began
     const std::size_t row = complete - static_cast<std::size_t>(steps_per_period - after) - 1;
-    lines.push_back({"t/T = " + shortest(static_cast<double>(after) / steps_per_period), radius_mm,
+    lines.push_back({"t/T = " + plain_number(static_cast<double>(after) / steps_per_period), radius_mm,
                      std::span(membrane.values).subspan(row * radius.size(), radius.size())});
   }
   plot_lines(folder / "membrane.png", title + ", last period", "radius (mm)",
@@ -135,15 +136,16 @@ void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, co
 
 void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
   if (scene.problem.general) {
-    plot_state(run.folder(), run.view(), state, scene.name + ", t = " + shortest(state.time) + " s");
+    plot_state(run.folder(), run.view(), state, scene.name + ", t = " + plain_number(state.time) + " s");
     return;
   }
   const auto& point = scene.operating_point;
-  const std::string title = scene.name + ": " + shortest(point.frequency) + " Hz, stroke " +
-                            shortest(units::length_to_mm(point.stroke)) + " mm, head " +
-                            shortest(units::pressure_to_mmHg(point.head)) + " mmHg";
-  plot_state(run.folder(), run.view(), state,
-             title + ", t/T = " + shortest(static_cast<double>(state.step) / scene.time.steps_per_period));
+  const std::string title = scene.name + ": " + plain_number(point.frequency) + " Hz, stroke " +
+                            plain_number(units::length_to_mm(point.stroke)) + " mm, head " +
+                            plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
+  plot_state(
+      run.folder(), run.view(), state,
+      title + ", t/T = " + plain_number(static_cast<double>(state.step) / scene.time.steps_per_period));
   plot_membrane(run.folder(), run.membrane(), run.view().probes.radius, scene.time.steps_per_period, title);
   plot_flow(run.folder(), run.series(), title);
 }

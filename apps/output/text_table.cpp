@@ -36,12 +36,6 @@ std::string text_table(const std::vector<std::string>& header,
   return text;
 }
 
-std::string shortest(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 std::string decimals(double value, int count) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", count, value);

@@ -11,9 +11,6 @@ namespace undula::apps {
 std::string text_table(const std::vector<std::string>& header,
                        const std::vector<std::vector<std::string>>& rows);
 
-/// At most six digits, as short as they come: "120", "0.53".
-std::string shortest(double value);
-
 /// Fixed notation with the given number of decimals.
 std::string decimals(double value, int count);
 

@@ -1,5 +1,4 @@
 // Texts made from single keys of the scene table: ranges, defaults, numbers.
-#include <cstdio>
 
 #include "fom/scene/scene_table.hpp"
 #include "rom/base/text_file.hpp"
@@ -13,13 +12,6 @@ struct Overloaded : Visitors... {
 };
 template <typename... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
-
-/// For people: "0.5", "100", "1e+14".
-std::string plain(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
 
 } // namespace
 
@@ -50,8 +42,8 @@ std::string allowed_text(const SceneKey& key) {
       Overloaded{
           [&](const RealKey& real) {
             const AllowedRange& range = real.allowed;
-            return "a number in " + std::string(range.low_open ? "(" : "[") + plain(range.low) + ", " +
-                   plain(range.high) + (range.high_open ? ")" : "]") +
+            return "a number in " + std::string(range.low_open ? "(" : "[") + plain_number(range.low) + ", " +
+                   plain_number(range.high) + (range.high_open ? ")" : "]") +
                    (key.unit.empty() ? "" : " " + key.unit);
           },
           [](const IntegerKey& integer) {

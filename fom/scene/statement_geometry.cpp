@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "fom/scene/expression.hpp"
@@ -13,6 +12,7 @@
 #include "geometry/mesh/outline_faults.hpp"
 #include "geometry/mesh/polygons.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
@@ -21,13 +21,7 @@ namespace {
 constexpr int circle_corners = 720;
 constexpr double rounding = 1e-9; ///< of an extent
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string mm(double length) { return number(units::length_to_mm(length)); }
+std::string mm(double length) { return plain_number(units::length_to_mm(length)); }
 
 std::string mm(const Point<2>& x) { return "(" + mm(x.x()) + ", " + mm(x.y()) + ") mm"; }
 
@@ -308,7 +302,7 @@ private:
     const auto found = value.finite_value(units::length_to_mm(x[0]), units::length_to_mm(x[1]), t);
     if (!found)
       throw InputError("an expression has no finite value",
-                       in_quotes(text) + " at " + mm(x) + ", t = " + number(t) + " s",
+                       in_quotes(text) + " at " + mm(x) + ", t = " + plain_number(t) + " s",
                        "an expression that is finite wherever and whenever it counts", where);
     return *found;
   }
@@ -466,7 +460,7 @@ private:
   }
 
   [[noreturn]] void refuse_work(double cells, const std::string& of_what, const std::string& key) const {
-    throw InputError("the meshes would have too many cells", "about " + number(cells) + " " + of_what,
+    throw InputError("the meshes would have too many cells", "about " + plain_number(cells) + " " + of_what,
                      "at most " + std::to_string(most_cells) + " in all; a larger size", at(key));
   }
 

@@ -38,4 +38,7 @@ std::string read_text_file(const std::filesystem::path& file);
 /// Shortest decimal notation that reads back to exactly `value`.
 std::string exact_number(double value);
 
+/// For people, six digits: "0.5", "100", "1e+14".
+std::string plain_number(double value);
+
 } // namespace undula

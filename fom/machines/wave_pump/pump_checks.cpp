@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "fom/machines/wave_pump/pump_problem.hpp"
@@ -15,6 +14,7 @@
 #include "geometry/mesh/refinement_box.hpp"
 #include "geometry/wave_pump/pump.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
@@ -22,13 +22,7 @@ namespace {
 
 constexpr double rounding = 1e-9;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-std::string mm(double length) { return number(units::length_to_mm(length)); }
+std::string mm(double length) { return plain_number(units::length_to_mm(length)); }
 
 std::string name_of(const Scene& scene) {
   return scene.file.empty() ? "scene \"" + scene.name + '"' : scene.file.string();
@@ -169,7 +163,7 @@ PumpWork check_pump_work(const Scene& scene, const PumpProfile& profile) {
   }
   if (const double cells = work.fluid_cells + work.solid_cells; !(cells <= most_cells))
     throw InputError("the meshes would have too many cells",
-                     "about " + number(cells) + ", most of them by \"" + key + "\"" +
+                     "about " + plain_number(cells) + ", most of them by \"" + key + "\"" +
                          (key == "mesh.membrane_size_mm" ? " or the membrane's thickness" : ""),
                      "at most " + std::to_string(most_cells) + " in all",
                      place_of_key(scene, key, name_of(scene)));
@@ -223,8 +217,8 @@ std::vector<std::string> profile_differences(const Scene& scene) {
       const auto& [scene_key, value] = counterpart;
       if (stated.key == key && std::abs(stated.value - value) > rounding * std::abs(value))
         sentences.push_back(profile.file.string() + ":" + std::to_string(stated.line) + " states " +
-                            stated.key + " = " + number(stated.value) + "; what counts is " + scene_key +
-                            " = " + number(value) + " of the scene");
+                            stated.key + " = " + plain_number(stated.value) + "; what counts is " +
+                            scene_key + " = " + plain_number(value) + " of the scene");
     }
   return sentences;
 }

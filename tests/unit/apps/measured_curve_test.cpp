@@ -12,6 +12,7 @@
 #include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
 namespace undula::apps {
@@ -168,7 +169,7 @@ TEST(Progress, TheLineEstimatesTheTimeLeft) {
 TEST(TextTable, ColumnsAreAligned) {
   EXPECT_EQ(text_table({"a", "bb"}, {{"long", "1"}, {"x", "222"}}), "a      bb\nlong    1\nx     222\n");
   EXPECT_EQ(decimals(1.2345, 2), "1.23");
-  EXPECT_EQ(shortest(0.53), "0.53");
+  EXPECT_EQ(plain_number(0.53), "0.53");
 }
 
 } // namespace
