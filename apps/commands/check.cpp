@@ -125,6 +125,10 @@ void print_json(const Scene& scene, const SceneCheck& check) {
     }
     result["meshes"].push_back(std::move(entry));
   }
+  for (const CheckedWeight& weight : check.weights) {
+    result["stabilisation"].push_back(
+        {{"key", weight.key}, {"value", weight.value}, {"origin", weight.origin}});
+  }
   if (check.thin_gap) {
     result["thin_gap"] = layout_json(*check.thin_gap);
   }
@@ -160,6 +164,14 @@ std::string mesh_tables(const Scene& scene, const std::vector<CheckedMesh>& mesh
          "\n" + text_table(header, places);
 }
 
+std::string weights_table(const std::vector<CheckedWeight>& weights) {
+  std::vector<std::vector<std::string>> rows;
+  for (const CheckedWeight& weight : weights) {
+    rows.push_back({weight.key, weight.value, weight.origin});
+  }
+  return weights.empty() ? "" : text_table({"stabilisation", "in force", "origin"}, rows) + "\n";
+}
+
 std::string closing_lines(const SceneCheck& check) {
   std::string text;
   std::string walls;
@@ -182,8 +194,8 @@ std::string closing_lines(const SceneCheck& check) {
 void print_text(const Scene& scene, const SceneCheck& check) {
   std::cout << scene_to_toml(scene) << "\n"
             << (check.thin_gap ? layout_tables(*check.thin_gap) : mesh_tables(scene, check.meshes)) << "\n"
-            << closing_lines(check) << "\nscene " << scene.name << " is valid, hash " << scene_hash(scene)
-            << "\n";
+            << weights_table(check.weights) << closing_lines(check) << "\nscene " << scene.name
+            << " is valid, hash " << scene_hash(scene) << "\n";
 }
 
 void check(const CheckOptions& options) {

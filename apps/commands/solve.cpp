@@ -173,10 +173,14 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
   MPI_Comm_size(comm, &ranks);
 
   // 1. Read the scene; refuse what would be refused later.
-  const Scene scene = read_scene(options.scene, options.overrides);
+  Scene scene = read_scene(options.scene, options.overrides);
+  const std::string folder = options.output.empty() ? scene.name + "_run" : options.output;
+  if (options.restart) {
+    on_root(comm, [&] { keep_reference_velocity(folder, scene); });
+    MPI_Bcast(&scene.stabilisation.reference_velocity, 1, MPI_DOUBLE, 0, comm);
+  }
   check_checkpoint_interval(scene);
   warn_of_profile(scene);
-  const std::string folder = options.output.empty() ? scene.name + "_run" : options.output;
   const ExistingRun existing = options.restart ? ExistingRun::go_on
                                : options.force ? ExistingRun::replace
                                                : ExistingRun::refuse;

@@ -8,10 +8,13 @@
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/general_observables.hpp"
 #include "fom/scene/scene_checks.hpp"
+#include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_time.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "fom/scene/statement_geometry.hpp"
 #include "geometry/mesh/gmsh_import.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 namespace {
@@ -71,6 +74,28 @@ double estimated_cells(const Scene& scene) {
   return work.fluid_cells + work.solid_cells;
 }
 
+std::vector<CheckedWeight> checked_weights(const Scene& scene, const StabilisationWeights& in_force) {
+  Scene stated = scene, used = scene; // the accessors of the table give mutable references
+  used.stabilisation = in_force;
+  const std::string start = scene.default_weights == DefaultWeights::published ? "published" : "derived";
+  std::vector<CheckedWeight> weights;
+  for (const SceneKey& key : scene_table()) {
+    const auto* real = std::get_if<RealKey>(&key.value);
+    if (key.section() != "stabilisation" || real == nullptr) {
+      continue;
+    }
+    const bool filled_in = real->field(stated) != real->field(used); // a scale of 0
+    weights.push_back({key.leaf(), plain_number(to_surface_unit(real->field(used), real->cgs_per_unit)),
+                       filled_in                         ? "derived"
+                       : scene.places.contains(key.path) ? "stated"
+                                                         : start});
+  }
+  weights.push_back({"velocity_scale",
+                     in_force.velocity_scale == VelocityScale::local ? "local" : "reference",
+                     scene.places.contains("stabilisation.velocity_scale") ? "stated" : start});
+  return weights;
+}
+
 /// A failure of the mesher or the cut, on one line.
 std::string on_one_line(const std::exception& error) {
   std::string text = error.what();
@@ -105,6 +130,7 @@ SceneCheck mesh_and_cut(const Scene& scene) {
   if (problem.pin_pressure && !problem.background.cells.empty()) {
     check.notes.emplace_back("no boundary is an opening: the pressure counts from one point of the fluid");
   }
+  check.weights = checked_weights(scene, problem.stabilisation);
   const Discretisation<2> disc = discretise(std::move(problem), CutOptions{});
   check.unknowns = disc.unknowns();
   if (scene.problem.general) {

@@ -20,10 +20,18 @@ struct CheckedMesh {
   int reoriented = 0; ///< cells of the file that were turned round
 };
 
+/// A weight of the stabilisation and where it comes from.
+struct CheckedWeight {
+  std::string key;    ///< of section [stabilisation], without the section
+  std::string value;  ///< in force, in the unit of the key
+  std::string origin; ///< "stated", "derived" or "published"
+};
+
 struct SceneCheck {
   double estimated_cells = 0;            ///< of all meshes, before they were made
   std::vector<CheckedMesh> meshes;       ///< none for thin gaps
   std::optional<ThinGapLayout> thin_gap; ///< of thin gaps
+  std::vector<CheckedWeight> weights;    ///< of the stabilisation; none for thin gaps
   int unknowns = 0;                      ///< of one step
   int steps = 0;                         ///< of a run
   std::vector<std::string> walls;        ///< boundaries without a condition of their own

@@ -1,6 +1,7 @@
 #include "fom/output/run_directory.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 
 #include "fom/output/provenance.hpp"
@@ -97,6 +98,16 @@ bool checkpoint_due(const Scene& scene, int step, int saved_step, double seconds
   const int period = scene.problem.general ? 0 : scene.time.steps_per_period;
   const bool new_period = period > 0 && step / period > saved_step / period;
   return new_period || seconds >= seconds_between_checkpoints;
+}
+
+void keep_reference_velocity(const std::filesystem::path& folder, Scene& scene) {
+  const std::string key = "stabilisation.reference_velocity_cm_per_s";
+  if (!scene.problem.general || scene.places.contains(key) || !std::filesystem::is_directory(folder)) return;
+  const auto there = run_in(folder);
+  const std::string recorded = there ? recorded_value(there->text, key) : "";
+  double velocity = 0; // cm/s, the unit of the key
+  if (std::from_chars(recorded.data(), recorded.data() + recorded.size(), velocity).ec == std::errc())
+    scene.stabilisation.reference_velocity = velocity;
 }
 
 void check_run_directory(const std::filesystem::path& folder, const Scene& scene, ExistingRun existing) {

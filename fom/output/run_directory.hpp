@@ -46,6 +46,10 @@ bool checkpoint_due(const Scene& scene, int step, int saved_step, double seconds
 /// campaign's. Changes nothing.
 void check_run_directory(const std::filesystem::path& folder, const Scene& scene, ExistingRun existing);
 
+/// Gives a scene that leaves its reference velocity to be derived the one of the run in the folder, if there
+/// is a run: prolonged beyond what the velocity was derived from, it goes on with the same weights.
+void keep_reference_velocity(const std::filesystem::path& folder, Scene& scene);
+
 /// For one rank, which holds the FolderLock. Errors: InputError for a folder that is refused or not writable,
 /// NumericsError when the disk is full.
 class RunDirectory {

@@ -56,6 +56,12 @@ std::vector<KeyDifference> differing_keys(const std::string& text_before, const 
   return differences;
 }
 
+std::string recorded_value(const std::string& text, const std::string& key) {
+  const auto keys = keys_in(text);
+  const auto found = keys.find(key);
+  return found == keys.end() ? "" : found->second;
+}
+
 std::string difference_text(const std::vector<KeyDifference>& differences) {
   constexpr std::size_t told = 3;
   std::string text;

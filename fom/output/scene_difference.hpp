@@ -18,6 +18,9 @@ struct KeyDifference {
 /// Names of files are left out: what counts is their content.
 std::vector<KeyDifference> differing_keys(const std::string& text_before, const std::string& text_now);
 
+/// TOML value of a key in a resolved scene (text of scene_to_toml); "" where it is missing.
+std::string recorded_value(const std::string& text, const std::string& key);
+
 /// "time.step_s: was 0.01, is 0.02", the first few of a list; of an empty one, that it must be the content of
 /// a file.
 std::string difference_text(const std::vector<KeyDifference>& differences);

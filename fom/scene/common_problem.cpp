@@ -1,15 +1,22 @@
 #include "fom/scene/common_problem.hpp"
 
+#include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::fom {
+
+StabilisationWeights weights_in_force(const Scene& scene, double speed) {
+  StabilisationWeights weights = scene.stabilisation;
+  if (weights.reference_velocity == 0) weights.reference_velocity = speed;
+  if (weights.reference_time == 0) weights.reference_time = time_step(scene);
+  return weights;
+}
 
 FsiProblem<2> problem_without_meshes(const Scene& scene) {
   FsiProblem<2> problem;
   problem.space = scene.space;
   problem.flow = scene.flow;
   problem.fluid = scene.fluid;
-  problem.stabilisation = scene.stabilisation;
   problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
   return problem;
 }

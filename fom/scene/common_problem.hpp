@@ -10,7 +10,10 @@
 
 namespace undula::fom {
 
-/// Space, flow, fluid, interface and stabilisation; no meshes.
+/// The scene's weights of the stabilisation; a time of 0 is the time step, a velocity of 0 is `speed` (cm/s).
+StabilisationWeights weights_in_force(const Scene& scene, double speed);
+
+/// Space, flow, fluid and interface; neither meshes nor weights.
 FsiProblem<2> problem_without_meshes(const Scene& scene);
 
 /// The boxes [refine.NAME] of a scene.

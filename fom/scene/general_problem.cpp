@@ -176,6 +176,7 @@ FsiProblem<2> general_problem(const Scene& scene) {
   const ProblemStatement& statement = scene.problem;
   const Functions functions(scene);
   auto problem = problem_without_meshes(scene);
+  problem.stabilisation = weights_in_force(scene, 0); // 0: nothing drives, see stated_speed
   problem.body_force = functions.vector(statement.body_force, 1, scene.file.string() + ", section [domain]");
   const bool axisymmetric = scene.space == Space::axisymmetric;
   problem.background = domain_mesh(statement, axisymmetric);

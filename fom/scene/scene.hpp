@@ -31,6 +31,9 @@ enum class GapFriction {
   oscillatory, ///< no weaker than that of two Stokes layers, 2 viscosity u / (height * layer)
 };
 
+/// Which weights of the stabilisation a scene starts from, see fom/problem/default_weights.hpp.
+enum class DefaultWeights { derived, published };
+
 /// What keeps the reduced pressure stable.
 enum class PressureStability {
   projected_stabilisation, ///< the full-order pressure stabilisation, projected
@@ -128,7 +131,8 @@ struct Scene {
   MeshSizes mesh;
   TimeSettings time;
   ContactSettings contact;
-  StabilisationWeights stabilisation;
+  DefaultWeights default_weights = DefaultWeights::derived;
+  StabilisationWeights stabilisation; ///< scales of 0: see weights_in_force
   ThinGapSettings thin_gap;
   TrainingPlan training;
   OutputSettings output;

@@ -17,6 +17,7 @@
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_key_search.hpp"
 #include "fom/scene/scene_tolerance.hpp"
+#include "fom/scene/stated_speed.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::fom {
@@ -141,12 +142,15 @@ public:
         throw InputError("key " + in_quotes(key.path) + " (" + key.help + ") is missing", "nothing",
                          key.leaf() + " = " + allowed_text(key), origin.label + "," + place);
       }
+      const bool published = scene.default_weights == DefaultWeights::published;
       if (const auto* real = std::get_if<RealKey>(&key.value)) {
-        real->field(scene) = *real->fallback * real->cgs_per_unit;
+        const double value = published && real->published ? *real->published : *real->fallback;
+        real->field(scene) = value * real->cgs_per_unit;
       } else if (const auto* integer = std::get_if<IntegerKey>(&key.value)) {
         integer->field(scene) = *integer->fallback;
       } else if (const auto* choice = std::get_if<ChoiceKey>(&key.value)) {
-        choose(key, *choice, choice->fallback, "the scene table");
+        const bool other = published && !choice->published.empty();
+        choose(key, *choice, other ? choice->published : choice->fallback, "the scene table");
       } else if (const auto* expression = std::get_if<ExpressionKey>(&key.value)) {
         expression->field(scene) = expression->fallback;
       }
@@ -509,6 +513,13 @@ Scene parse_scene(std::string_view text, const std::string& origin_name, const s
   }
   parser.fill_defaults(origin);
   check_consistency(parser.scene, origin_name);
+  // Here, so that the resolved scene says it and a run that is prolonged beyond what it was derived from is
+  // told.
+  StabilisationWeights& weights = parser.scene.stabilisation;
+  if (weights.reference_velocity == 0) {
+    weights.reference_velocity = stated_speed(parser.scene);
+    parser.scene.places.erase("stabilisation.reference_velocity_cm_per_s"); // of the 0 that asked for it
+  }
   return parser.scene;
 }
 

@@ -31,8 +31,9 @@ std::string default_cell(const SceneKey& key) {
   if (key.required()) {
     return "required";
   }
-  const std::string text = default_text(key);
-  return text.empty() ? "none" : "`" + text + "`";
+  const std::string text = default_text(key), published = published_text(key);
+  return (text.empty() ? "none" : "`" + text + "`") +
+         (published.empty() ? "" : ", published `" + published + "`");
 }
 
 constexpr const char* table_head = "\n| key | accepts | default | meaning |\n|---|---|---|---|\n";

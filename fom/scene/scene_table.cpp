@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "fom/problem/default_weights.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
@@ -276,38 +277,57 @@ std::vector<SceneKey> numerics_keys() {
 }
 
 std::vector<SceneKey> stabilisation_keys() {
-  const auto weight = [](const char* path, const char* help, std::function<double&(Scene&)> field,
-                         double fallback) {
-    return SceneKey{path, "", help, shapes_state, RealKey{std::move(field), 1, from_to(0, 1e6), fallback}};
+  // Scales of 0 are derived where a problem is made.
+  static constexpr StabilisationWeights derived = derived_weights(0, 0),
+                                        published = published_weights(100, 2e-4);
+  using Weight = double StabilisationWeights::*;
+  const auto key = [](const char* path, const char* unit, const char* help, Weight weight,
+                      AllowedRange allowed) {
+    return SceneKey{path, unit, help, shapes_state,
+                    RealKey{[weight](Scene& scene) -> double& { return scene.stabilisation.*weight; }, 1,
+                            allowed, derived.*weight, published.*weight}};
   };
+  const auto weight = [&](const char* path, const char* help, Weight member) {
+    return key(path, "", help, member, from_to(0, 1e6));
+  };
+  using Weights = StabilisationWeights;
+  auto scale = choice<FIELD(stabilisation.velocity_scale)>(
+      {name("reference", VelocityScale::reference), name("local", VelocityScale::local)}, {}, "local");
+  scale.published = "reference";
   return {
+      {"stabilisation.weights", "",
+       "where the other keys of this section start from; `derived`: for Re 0 to 1000, with scales from the "
+       "scene; `published`: those of the pump of fixed geometry, the same for all operating points, as "
+       "reduced "
+       "models need them",
+       shapes_state,
+       choice<FIELD(default_weights)>(
+           {name("derived", DefaultWeights::derived), name("published", DefaultWeights::published)}, {},
+           "derived")},
       weight("stabilisation.velocity_jump", "jump of the velocity gradient (convection)",
-             FIELD(stabilisation.velocity_jump), 0.05),
+             &Weights::velocity_jump),
       {"stabilisation.velocity_scale", "",
        "velocity in velocity_jump; `reference`: the same everywhere, as reduced models need it; `local`: "
-       "that "
-       "of the flow across each facet, none along a wall",
-       shapes_state,
-       choice<FIELD(stabilisation.velocity_scale)>(
-           {name("reference", VelocityScale::reference), name("local", VelocityScale::local)}, {},
-           "reference")},
-      weight("stabilisation.pressure_jump", "jump of the pressure gradient",
-             FIELD(stabilisation.pressure_jump), 0.05),
-      weight("stabilisation.divergence", "jump of the divergence", FIELD(stabilisation.divergence), 0.05),
+       "that of the flow across each facet, none along a wall",
+       shapes_state, std::move(scale)},
+      weight("stabilisation.pressure_jump", "jump of the pressure gradient", &Weights::pressure_jump),
+      weight("stabilisation.divergence", "jump of the divergence", &Weights::divergence),
       weight("stabilisation.ghost_viscous", "ghost penalty of cut parts, viscous scale",
-             FIELD(stabilisation.ghost_viscous), 0.1),
+             &Weights::ghost_viscous),
       weight("stabilisation.ghost_inertial", "ghost penalty of cut parts, inertial scale",
-             FIELD(stabilisation.ghost_inertial), 0.05),
+             &Weights::ghost_inertial),
       weight("stabilisation.ghost_pressure", "ghost penalty of cut parts, pressure",
-             FIELD(stabilisation.ghost_pressure), 0.05),
-      {"stabilisation.nitsche_viscous", "", "Nitsche penalty, times viscosity / h", shapes_state,
-       RealKey{FIELD(stabilisation.nitsche_viscous), 1, above_to(0, 1e6), 20.0}},
+             &Weights::ghost_pressure),
+      key("stabilisation.nitsche_viscous", "", "Nitsche penalty, times viscosity / h",
+          &Weights::nitsche_viscous, above_to(0, 1e6)),
       weight("stabilisation.nitsche_normal", "Nitsche penalty on the normal component",
-             FIELD(stabilisation.nitsche_normal), 1.0),
-      {"stabilisation.reference_velocity_cm_per_s", "cm_per_s", "velocity that scales the weights",
-       shapes_state, RealKey{FIELD(stabilisation.reference_velocity), 1, above_to(0, 1e6), 100.0}},
-      {"stabilisation.reference_time_s", "s", "time that scales the weights", shapes_state,
-       RealKey{FIELD(stabilisation.reference_time), 1, above_to(0, 1e6), 2e-4}},
+             &Weights::nitsche_normal),
+      key("stabilisation.reference_velocity_cm_per_s", "cm_per_s",
+          "velocity that scales the weights; 0: the greatest that the scene states, or that its pressures "
+          "and forces could give; of a pump, membrane's width * frequency",
+          &Weights::reference_velocity, from_to(0, 1e6)),
+      key("stabilisation.reference_time_s", "s", "time that scales the weights; 0: the time step",
+          &Weights::reference_time, from_to(0, 1e6)),
   };
 }
 
@@ -459,7 +479,8 @@ std::string section_help(const std::string& section) {
       {"contact", "Solids that come close to walls, and the slip that lets them (finite elements)."},
       {"output", "Files besides the time series and the cycle means."},
       {"stabilisation",
-       "Weights of the stabilised cut finite elements. One set serves all operating points."},
+       "Weights of the stabilised cut finite elements. The defaults suit a new scene "
+       "(docs/writing_a_scene.md)."},
       {"thin_gap",
        "Closures of the thin-gap level (`model.space = \"thin-gap\"`). Heights, areas and inertances "
        "come from the profile."},

@@ -34,7 +34,8 @@ struct RealKey {
   std::function<double&(Scene&)> field;
   double cgs_per_unit = 1;
   AllowedRange allowed;
-  std::optional<double> fallback; ///< surface unit; none: the key is required
+  std::optional<double> fallback;       ///< surface unit; none: the key is required
+  std::optional<double> published = {}; ///< in place of `fallback` with stabilisation.weights = "published"
 };
 
 struct IntegerKey {
@@ -51,6 +52,7 @@ struct ChoiceKey {
   std::vector<std::pair<std::string, int>> available; ///< name, enumerator
   std::vector<std::string> planned;                   ///< in the design, refused by this version
   std::string fallback;
+  std::string published = {}; ///< as for RealKey; "": the same
 };
 
 /// A label that may become part of file names and of scripts: not empty, no control characters, no / and \,
@@ -137,6 +139,9 @@ std::string allowed_text(const SceneKey& key);
 
 /// The default in TOML notation, "" if there is none.
 std::string default_text(const SceneKey& key);
+
+/// The default with stabilisation.weights = "published", "" if that is the same.
+std::string published_text(const SceneKey& key);
 
 /// Shortest decimal notation that reads back to exactly `value`, always a TOML float.
 std::string shortest_number(double value);

@@ -91,6 +91,14 @@ std::string default_text(const SceneKey& key) {
                     key.value);
 }
 
+std::string published_text(const SceneKey& key) {
+  if (const auto* real = std::get_if<RealKey>(&key.value)) {
+    return real->published && real->published != real->fallback ? shortest_number(*real->published) : "";
+  }
+  const auto* choice = std::get_if<ChoiceKey>(&key.value);
+  return choice != nullptr && !choice->published.empty() ? "\"" + choice->published + "\"" : "";
+}
+
 std::string shortest_number(double value) {
   std::string number = exact_number(value);
   // TOML tells floats from integers by the point or the exponent; "inf" and "nan" are floats.

@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "fom/problem/default_weights.hpp"
 #include "fom/time/reaction.hpp"
 #include "fom/time/steady.hpp"
 #include "tests/verification/support/cylinder_channel.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 
 namespace undula::verification {
@@ -66,7 +66,7 @@ void expect_2d1(const char* name, const SteadyFlow& flow, const Point<2>& force,
 TEST(FluidCylinder, SteadyDragOnAFittedMesh) {
   for (const int side : {20, 40}) {
     const auto flow =
-        steady(cylinder_problem(fitted_cylinder_mesh(side, 0.08 / side), 0.2, default_weights(0.3, 0.1)));
+        steady(cylinder_problem(fitted_cylinder_mesh(side, 0.08 / side), 0.2, derived_weights(0.3, 0.1)));
     const auto residual = steady_residual<2>(flow.disc, flow.operators, flow.x);
     expect_2d1("fitted", flow, force_on_boundary<2>(flow.disc, residual, "cylinder"),
                side == 20 ? 0.035 : 0.01);
@@ -74,7 +74,7 @@ TEST(FluidCylinder, SteadyDragOnAFittedMesh) {
 }
 
 TEST(FluidCylinder, SteadyDragOnAnImmersedSolid) {
-  auto problem = cylinder_problem(channel_background(0.003, 0.02), 0.2, default_weights(0.3, 0.1));
+  auto problem = cylinder_problem(channel_background(0.003, 0.02), 0.2, derived_weights(0.3, 0.1));
   SolidBody<2> cylinder;
   cylinder.name = "cylinder";
   cylinder.mesh = cylinder_mesh(128, 2);
@@ -136,7 +136,7 @@ VortexStreet vortex_street(int side, double dt, double t_end, const Stabilisatio
 /// A mesh and step that a short test affords: the frequency is several per cent low, see
 /// docs/verification.md.
 TEST(FluidCylinder, CoarseVortexStreet) {
-  const auto street = vortex_street(24, 0.006, 4.0, default_weights(1.0, 0.1));
+  const auto street = vortex_street(24, 0.006, 4.0, derived_weights(1.0, 0.1));
   ASSERT_GE(street.periods, 3);
   EXPECT_LT(std::abs(street.strouhal / 0.301841 - 1), 0.1);
   EXPECT_LT(std::abs(street.drag_max / 3.227 - 1), 0.05);
@@ -146,7 +146,7 @@ TEST(FluidCylinder, CoarseVortexStreet) {
 /// Finer mesh, lighter stabilisation. Takes many minutes: run it by name with
 /// --gtest_also_run_disabled_tests.
 TEST(FluidCylinder, DISABLED_VortexStreet) {
-  auto weights = default_weights(1.0, 0.1);
+  auto weights = derived_weights(1.0, 0.1);
   weights.velocity_jump = weights.divergence = 0.01;
   const auto street = vortex_street(52, 0.004, 4.0, weights);
   ASSERT_GE(street.periods, 3);

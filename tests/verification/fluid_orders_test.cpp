@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <random>
 
-#include "tests/verification/support/default_weights.hpp"
+#include "fom/problem/default_weights.hpp"
 #include "tests/verification/support/flow_gallery.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
@@ -39,7 +39,7 @@ void expect_orders(const char* name, ManufacturedFlow flow, const TurnedBox* box
     flow.viscosity = convects ? 0.05 : 1.0;
     std::vector<double> velocity, gradient, pressure;
     for (const int n : {8, 16, 32, 64}) {
-      auto weights = default_weights(convects ? 1.0 : 0.0, 1.0);
+      auto weights = derived_weights(convects ? 1.0 : 0.0, 1.0);
       weights.velocity_scale = regime.scale;
       const auto solid = box ? std::optional(mesh_of(*box)) : std::nullopt;
       const auto errors =

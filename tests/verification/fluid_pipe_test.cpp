@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "fom/problem/default_weights.hpp"
 #include "fom/time/steady.hpp"
 #include "fom/time/time_stepper.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/rectangle_mesh.hpp"
 
@@ -50,7 +50,7 @@ double steady_flow(const FsiProblem<2>& problem) {
 
 TEST(FluidPipe, PoiseuilleFlowOfPipeAndChannel) {
   const double viscosity = 0.04, drop = 0.3, length = 0.5;
-  const auto weights = default_weights(1.0, 0.1);
+  const auto weights = derived_weights(1.0, 0.1);
   for (const auto space : {Space::axisymmetric, Space::plane}) {
     const double exact = space == Space::axisymmetric ? pi * drop / (8 * viscosity * length)
                                                       : drop / (12 * viscosity * length);
@@ -106,7 +106,7 @@ Complex computed_amplitude(const Womersley& exact, int cells_across, int steps_p
       discretise<2>(duct(
                         Space::axisymmetric, cells_across, length, exact.density, viscosity,
                         [&](double t) { return exact.gradient * length * std::cos(exact.omega * t); },
-                        default_weights(std::abs(exact.scale()), dt)),
+                        derived_weights(std::abs(exact.scale()), dt)),
                     {});
   const auto operators = build_operators<2>(disc, MPI_COMM_SELF, timer);
   TimeStepper<2> stepper(disc, operators, scheme, dt, 1, timer);

@@ -7,8 +7,8 @@
 #include <functional>
 #include <map>
 
+#include "fom/problem/default_weights.hpp"
 #include "tests/verification/support/condition_number.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/flow_gallery.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
@@ -76,7 +76,7 @@ Spread sweep(const char* name, const std::function<double(double)>& value_at) {
 }
 
 TEST(FluidSweep, ErrorsAreBounded) {
-  const auto weights = default_weights(0.0, 1.0);
+  const auto weights = derived_weights(0.0, 1.0);
   std::map<double, FlowErrors> errors;
   for (const double offset : offsets) errors[offset] = errors_at(offset, weights);
   EXPECT_LT(sweep("u H1", [&](double offset) { return errors[offset].velocity_h1; }).worst, 1.3);
@@ -87,7 +87,7 @@ TEST(FluidSweep, ErrorsAreBounded) {
 /// The jump of the divergence over all facets holds the velocity of small parts, too. Without it, the ghost
 /// penalty has to bound the condition number alone; without both, nothing does.
 TEST(FluidSweep, ConditionIsBoundedByTheGhostPenalty) {
-  auto weights = default_weights(0.0, 1.0);
+  auto weights = derived_weights(0.0, 1.0);
   const auto condition = [&](double offset) { return condition_at(offset, weights); };
   EXPECT_LT(sweep("condition, defaults", condition).worst, 2);
   weights.divergence = 0;

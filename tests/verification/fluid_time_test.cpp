@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
+#include "fom/problem/default_weights.hpp"
 #include "fom/time/time_stepper.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/flow_gallery.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/steady_flow.hpp"
@@ -20,7 +20,7 @@ Eigen::VectorXd stirred(TimeScheme scheme, int steps) {
   at_rest.viscosity = 0.02;
   auto problem = manufactured_problem(at_rest, warped_square(12),
                                       turned_box(box.centre, box.half_x, box.half_y, box.angle, 4, 3),
-                                      default_weights(1.0, 0.1));
+                                      derived_weights(1.0, 0.1));
   for (auto& [name, condition] : problem.boundary) condition.velocity = nullptr;
   problem.body_force = [](const Point<2>& x, double t) -> Point<2> {
     return 20 * t * t * Point<2>(std::cos(2 * t) * x[1], -std::sin(3 * t) * x[0] * x[0]);

@@ -97,7 +97,7 @@ TEST_P(CoupledTimeOrder, HoldsWithConvectionAndImposedMotion) {
   const double period = 0.02, stroke = 0.1;
   FsiProblem<2> problem;
   problem.fluid = {1.0, 0.035};
-  problem.stabilisation = default_weights(10.0, 0.001);
+  problem.stabilisation = derived_weights(10.0, 0.001);
   problem.background = box({0, -0.2}, {1, 0.2}, 20, 11);
   using Kind = BoundaryCondition<2>::Kind;
   for (const char* name : {"left", "bottom", "top"}) problem.boundary[name].kind = Kind::velocity;

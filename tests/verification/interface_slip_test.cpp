@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fom/problem/default_weights.hpp"
 #include "fom/time/reaction.hpp"
 #include "fom/time/steady.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/steady_flow.hpp"
 
@@ -43,7 +43,7 @@ TEST_P(SlipCouette, IsExactToRounding) {
     FsiProblem<2> problem;
     problem.flow = FlowModel::stokes;
     problem.fluid = {1.0, viscosity};
-    problem.stabilisation = default_weights(1.0, 1.0);
+    problem.stabilisation = derived_weights(1.0, 1.0);
     problem.slip_length = slip;
     problem.background = warped_square(8);
     problem.pin_pressure = true;
@@ -112,7 +112,7 @@ ManufacturedFlow slip_pipe(double slip) {
 void expect_orders(const char* name, const ManufacturedFlow& flow, const SimplexMesh<2>& plate, double slip) {
   std::vector<FlowErrors> errors;
   for (const int n : {8, 16, 32}) {
-    auto problem = manufactured_problem(flow, warped_square(n), plate, default_weights(1.0, 1.0));
+    auto problem = manufactured_problem(flow, warped_square(n), plate, derived_weights(1.0, 1.0));
     problem.slip_length = slip;
     errors.push_back(solve_manufactured(flow, problem));
     std::printf("%s, slip length %.0e, n = %2d: u L2 %.3e   u H1 %.3e   p L2 %.3e\n", name, slip, n,
@@ -149,7 +149,7 @@ TEST(Slip, TendsToNoSlipAndToNoFriction) {
   const TiltedSkin skin{0.3};
   const auto flow = slip_poiseuille(skin, 0);
   const auto solve = [&](double slip) {
-    auto problem = manufactured_problem(flow, warped_square(12), skin.plate(), default_weights(1.0, 1.0));
+    auto problem = manufactured_problem(flow, warped_square(12), skin.plate(), derived_weights(1.0, 1.0));
     problem.slip_length = slip;
     const auto disc = discretise<2>(std::move(problem), CutOptions{});
     PhaseTimer timer;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <numbers>
 
-#include "tests/verification/support/default_weights.hpp"
+#include "fom/problem/default_weights.hpp"
 #include "tests/verification/support/flow_gallery.hpp"
 #include "tests/verification/support/mapped_run.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
@@ -98,7 +98,7 @@ CarriedErrors carried_errors(const CarriedFlow& flow, const TurnedBox& box, int 
                              double end, int steps) {
   auto problem = manufactured_problem(flow.steady, warped_square(n),
                                       turned_box(box.centre, box.half_x, box.half_y, box.angle, 6, 5),
-                                      default_weights(1.0, 0.1));
+                                      derived_weights(1.0, 0.1));
   problem.body_force = [flow](const Point<2>& x, double t) { return flow.force(x, t); };
   const auto sides = tight_sides(flow, problem.background);
   for (auto& [name, condition] : problem.boundary)
@@ -172,7 +172,7 @@ TEST(MappedOrders, InTime) {
       auto problem = manufactured_problem(
           flow.steady, warped_square(10),
           turned_box(box_section.centre, box_section.half_x, box_section.half_y, box_section.angle, 4, 3),
-          default_weights(1.0, 0.1));
+          derived_weights(1.0, 0.1));
       // From rest, so that the start does not hide the order.
       for (auto& [name, condition] : problem.boundary) condition.velocity = nullptr;
       problem.body_force = [](const Point<2>& x, double t) -> Point<2> {
@@ -219,7 +219,7 @@ double stokes_layer_error(int per_layer, int steps, double* smallest_ratio) {
   };
   FsiProblem<2> problem;
   problem.fluid = {density, viscosity};
-  problem.stabilisation = default_weights(swing * rate, 1 / rate);
+  problem.stabilisation = derived_weights(swing * rate, 1 / rate);
   const double h = delta / per_layer;
   problem.background = tensor_mesh(spaced(0, width, static_cast<int>(std::lround(width / h))),
                                    spaced(0, top, static_cast<int>(std::lround(top / h))));

@@ -4,8 +4,9 @@
 #include <cstdio>
 
 #include "fom/coupling/moving_stepper.hpp"
+#include "fom/problem/default_weights.hpp"
+#include "fom/scene/scene.hpp"
 #include "rom/base/error.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
@@ -27,7 +28,7 @@ struct Landing {
 Landing land(double pressure, double dt, int steps) {
   FsiProblem<2> problem;
   problem.fluid = {1.0, 0.05};
-  problem.stabilisation = default_weights(1.0, 0.1);
+  problem.stabilisation = derived_weights(1.0, 0.1);
   problem.background = tensor_mesh(spaced(0, 1, 40), spaced(0, 0.5, 20));
   for (const auto& name : problem.background.boundary_names) problem.boundary[name];
   problem.pin_pressure = true;

@@ -5,8 +5,9 @@
 #include <cstdio>
 
 #include "fom/coupling/moving_stepper.hpp"
+#include "fom/problem/default_weights.hpp"
+#include "fom/scene/scene.hpp"
 #include "fom/time/reaction.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
@@ -28,7 +29,7 @@ struct MovingPlate {
       : motion(rigid), dt(step) {
     FsiProblem<2> problem;
     problem.fluid = {density, 0.05};
-    problem.stabilisation = default_weights(1.0, 1.0);
+    problem.stabilisation = derived_weights(1.0, 1.0);
     problem.background = warped_square(n);
     for (const auto& name : problem.background.boundary_names)
       problem.boundary[name].velocity = motion.velocity;

@@ -28,7 +28,11 @@ void require_trainable(const Scene& scene) {
          "no film, contact.film_mm = 0", "contact");
   refuse(scene.stabilisation.velocity_scale != VelocityScale::reference,
          "a reduced model is projected from penalties that do not depend on the flow",
-         "stabilisation.velocity_scale = \"local\"", "velocity_scale = \"reference\"", "stabilisation");
+         "stabilisation.velocity_scale = \"local\"", "weights = \"published\"", "stabilisation");
+  refuse(scene.stabilisation.reference_velocity == 0 || scene.stabilisation.reference_time == 0,
+         "a reduced model is projected from penalties that are the same at all operating points",
+         "a reference_velocity_cm_per_s or reference_time_s of 0, to be derived",
+         "weights = \"published\", or both > 0", "stabilisation");
   refuse(scene.operating_point.stroke_scale != 1, "a campaign states the stroke that the holder makes",
          "operating_point.stroke_scale = " + exact_number(scene.operating_point.stroke_scale),
          "1; ask the reduced model for the scaled stroke instead", "operating_point");

@@ -1,5 +1,7 @@
 #include "fom/machines/wave_pump/pump_problem.hpp"
 
+#include <algorithm>
+
 #include "fom/fom.hpp"
 #include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/common_problem.hpp"
@@ -58,11 +60,19 @@ PumpMeshes pump_meshes(const Scene& scene) {
   return meshes;
 }
 
+/// Speed of a wave that runs over the membrane once per period.
+double wave_speed(const Scene& scene, const SimplexMesh<2>& membrane) {
+  const auto [inner, outer] = std::minmax_element(membrane.points.begin(), membrane.points.end(),
+                                                  [](const auto& a, const auto& b) { return a[0] < b[0]; });
+  return ((*outer)[0] - (*inner)[0]) * scene.operating_point.frequency;
+}
+
 } // namespace
 
 FsiProblem<2> pump_problem(const Scene& scene) {
   auto meshes = pump_meshes(scene);
   auto problem = problem_without_meshes(scene);
+  problem.stabilisation = weights_in_force(scene, wave_speed(scene, meshes.solids.front()));
   problem.background = std::move(meshes.background);
 
   using Condition = BoundaryCondition<2>;

@@ -120,6 +120,23 @@ TEST_F(NothingLost, ARunIsNotCutShort) {
   EXPECT_EQ(read_time_series(run() / "time_series.csv").rows(), 10u);
 }
 
+// The inflow still rises when the first run ends, so that a longer scene by itself would have other weights.
+TEST_F(NothingLost, AProlongedRunKeepsItsReferenceVelocity) {
+  const auto velocity = [&] {
+    return text_of(run() / "scene_resolved.toml").find("velocity_cm_per_s = 0.5\n");
+  };
+  ASSERT_EQ(solve({"--set", "time.end_s=0.05"}).exit_code, 0);
+  ASSERT_NE(velocity(), std::string::npos);
+  const Outcome longer = solve({"--restart"});
+  EXPECT_EQ(longer.exit_code, 0) << longer.err;
+  EXPECT_NE(velocity(), std::string::npos);
+  EXPECT_EQ(read_time_series(run() / "time_series.csv").rows(), 10u);
+  const Outcome stated =
+      solve({"--restart", "--set", "time.end_s=0.2", "--set", "stabilisation.reference_velocity_cm_per_s=1"});
+  EXPECT_EQ(stated.exit_code, 2);
+  EXPECT_NE(stated.err.find("reference_velocity_cm_per_s: was 0.5, is 1.0"), std::string::npos) << stated.err;
+}
+
 TEST_F(NothingLost, TheKeyThatForbidsARestartIsNamed) {
   ASSERT_EQ(solve({}).exit_code, 0);
   const Outcome other = solve({"--restart", "--set", "time.step_s=0.02"});

@@ -201,6 +201,8 @@ TEST(OneDoorRefusals, TrainRefusesBeforeTheFirstRunWhatItWouldLeaveOut) {
            {{"model.solid=neo-hookean"}, "linear operators"},
            {{"contact.film_mm=0.1", "contact.stiffness_dyn_per_cm2=1e4"}, "contact"},
            {{"stabilisation.velocity_scale=local"}, "penalties"},
+           {{"stabilisation.weights=derived"}, "penalties"},
+           {{"stabilisation.reference_time_s=0"}, "penalties that are the same"},
            {{"operating_point.stroke_scale=1.1"}, "stroke_scale"}}) {
     Words words = {"train", scene};
     for (const std::string& setting : settings) {

@@ -225,7 +225,7 @@ TEST(PumpVolumes, AreThoseOfTheProfileRevolved) {
   FsiProblem<2> problem;
   problem.space = Space::axisymmetric;
   problem.fluid = {1.06, 0.035};
-  problem.stabilisation = default_weights(100, 2e-4);
+  problem.stabilisation = derived_weights(100, 2e-4);
   problem.background = pump_background(profile, sizes);
   for (const auto& name : problem.background.boundary_names)
     problem.boundary[name].kind = BoundaryCondition<2>::Kind::velocity;

@@ -76,7 +76,7 @@ Discretisation<2> pump(double gap_elements) {
   FsiProblem<2> problem;
   problem.space = Space::axisymmetric;
   problem.fluid = {1.0, 0.035};
-  problem.stabilisation = default_weights(100, 1e-4);
+  problem.stabilisation = derived_weights(100, 1e-4);
   problem.background = pump_background(profile, sizes);
   using Kind = BoundaryCondition<2>::Kind;
   for (const auto& name : problem.background.boundary_names)
@@ -207,7 +207,7 @@ TEST(DomainExtension, FoldsOnlyWhenAGapClosesInThePump) {
 double volume_left_at_a_turning_tip(int n, double smoothing) {
   FsiProblem<2> problem;
   problem.fluid = {1, 1};
-  problem.stabilisation = default_weights(1, 1);
+  problem.stabilisation = derived_weights(1, 1);
   const double h = 0.2 / n;
   problem.background =
       tensor_mesh(spaced(0, 4.8, static_cast<int>(4.8 / h)), spaced(0, 4.1, static_cast<int>(4.1 / h)),

@@ -186,7 +186,7 @@ TEST_P(MappedForms, APistonPushesAUniformFlow) {
     problem.space = GetParam();
     problem.flow = flow;
     problem.fluid = {1.0, 0.05};
-    problem.stabilisation = default_weights(1.0, 0.1);
+    problem.stabilisation = derived_weights(1.0, 0.1);
     problem.background =
         tensor_mesh(spaced(0, 0.5, 5), spaced(0, height, 16), {"axis", "wall", "below", "above"});
     using Kind = BoundaryCondition<2>::Kind;

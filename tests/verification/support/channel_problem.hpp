@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "fom/machines/wave_pump/pump_problem.hpp"
-#include "tests/verification/support/default_weights.hpp"
+#include "fom/problem/default_weights.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
 
@@ -26,7 +26,7 @@ inline FsiProblem<2> channel_with_plate(Space space) {
   FsiProblem<2> problem;
   problem.space = space;
   problem.fluid = {1.0, 0.05};
-  problem.stabilisation = default_weights(10.0, 1e-3);
+  problem.stabilisation = derived_weights(10.0, 1e-3);
   problem.background = tensor_mesh(spaced(0, Sizes::radius, 12), spaced(0, Sizes::height, 9),
                                    {"axis", "wall", outlet_name, inlet_name});
   problem.boundary["axis"].kind = Kind::symmetry;

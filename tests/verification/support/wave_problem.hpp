@@ -3,8 +3,8 @@
 
 #include <numbers>
 
+#include "fom/problem/default_weights.hpp"
 #include "fom/system/operators.hpp"
-#include "tests/verification/support/default_weights.hpp"
 #include "tests/verification/support/membrane_wave.hpp"
 #include "tests/verification/support/names.hpp"
 #include "tests/verification/support/solid_meshes.hpp"
@@ -24,7 +24,7 @@ inline Discretisation<2> wave_discretisation(const WaveCase& scene) {
   FsiProblem<2> problem;
   problem.flow = FlowModel::stokes; // time-dependent: the mass stays
   problem.fluid = {wave.fluid_density, wave.viscosity};
-  problem.stabilisation = default_weights(1.0, scene.reference_time);
+  problem.stabilisation = derived_weights(1.0, scene.reference_time);
   problem.pin_pressure = true;
   problem.background =
       box({0, -wave.layers[0] - wave.h / 2}, {1, wave.layers[1] + wave.h / 2}, scene.nx, scene.ny);
