@@ -121,16 +121,19 @@ SceneCheck mesh_and_cut(const Scene& scene) {
     return check;
   }
   FsiProblem<2> problem = scene_problem(scene);
-  check.meshes.push_back(checked("background", problem.background));
+  const bool fluid = !problem.background.cells.empty();
+  if (fluid) {
+    check.meshes.push_back(checked("background", problem.background));
+    check.weights = checked_weights(scene, problem.stabilisation);
+  }
   for (const SolidBody<2>& solid : problem.solids) {
     check.meshes.push_back(checked(solid.name, solid.mesh));
   }
   add_files(scene, check);
   check.walls = wall_names(problem);
-  if (problem.pin_pressure && !problem.background.cells.empty()) {
+  if (problem.pin_pressure && fluid) {
     check.notes.emplace_back("no boundary is an opening: the pressure counts from one point of the fluid");
   }
-  check.weights = checked_weights(scene, problem.stabilisation);
   const Discretisation<2> disc = discretise(std::move(problem), CutOptions{});
   check.unknowns = disc.unknowns();
   if (scene.problem.general) {

@@ -302,10 +302,16 @@ void add_entry(Scene& scene, const std::string& kind, const std::string& name) {
   }
 }
 
+bool is_of_fluid(std::string_view path) {
+  return path.starts_with("fluid.") || path.starts_with("stabilisation.");
+}
+
 std::vector<SceneKey> keys_of(const Scene& scene) {
+  const bool in_vacuo = scene.problem.general && !has_fluid(scene.problem.domain);
   std::vector<SceneKey> keys;
   for (const SceneKey& key : scene_table()) {
-    if (key.applies_to(scene)) {
+    const bool of_no_fluid = in_vacuo && is_of_fluid(key.path);
+    if (key.applies_to(scene) && !of_no_fluid) {
       keys.push_back(key);
     }
   }

@@ -48,7 +48,11 @@ void add_entry(Scene& scene, const std::string& kind, const std::string& name);
 /// Section of constants for expressions: [constants], any name, any number.
 inline constexpr const char* constants_section = "constants";
 
-/// The keys that a scene has: of the table as far as they apply to it, then of its entries.
+/// Whether a key says something of the fluid alone.
+bool is_of_fluid(std::string_view path);
+
+/// The keys that a scene has: of the table as far as they apply to it (without a domain none of the fluid's),
+/// then of its entries.
 std::vector<SceneKey> keys_of(const Scene& scene);
 
 } // namespace undula::fom

@@ -22,7 +22,7 @@ constexpr double min_angle = 25; ///< degrees, of the meshes
 
 SimplexMesh<2> domain_mesh(const ProblemStatement& problem, bool axisymmetric) {
   const auto& domain = problem.domain;
-  if (domain.shape.outline.empty() && domain.shape.radius == 0) return {};
+  if (!has_fluid(domain)) return {};
   const TaggedPolygon polygon = domain_polygon(problem);
   const FluidSize size(problem, polygon, axisymmetric);
   return mesh_polygon(

@@ -29,6 +29,11 @@ struct DomainStatement {
   double growth = 0;              ///< increase of the size per unit distance from where it is refined
 };
 
+/// Whether there is a fluid; otherwise solids in vacuo.
+inline bool has_fluid(const DomainStatement& domain) {
+  return !domain.shape.outline.empty() || domain.shape.radius > 0;
+}
+
 /// A hole of the domain. Its edge is a boundary with the name of the hole.
 struct HoleStatement {
   ShapeStatement shape;

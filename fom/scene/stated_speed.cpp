@@ -158,8 +158,7 @@ double two_digits(double value) {
 
 double stated_speed(const Scene& scene) {
   const ProblemStatement& problem = scene.problem;
-  const ShapeStatement& shape = problem.domain.shape;
-  if (!problem.general || (shape.outline.empty() && shape.radius == 0)) return 0;
+  if (!problem.general || !has_fluid(problem.domain)) return 0;
   const bool axisymmetric = scene.space == Space::axisymmetric;
   const Sampler sampler(scene);
   const TaggedPolygon domain = domain_polygon(problem);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "fom/scene/entry_table.hpp"
 #include "fom/scene/key_place.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/statement_geometry.hpp"
@@ -42,8 +43,7 @@ void check_shape(const ShapeStatement& shape, const std::string& where) {
 void check_domain(const ProblemStatement& problem, const std::string& where) {
   const DomainStatement& domain = problem.domain;
   const std::string at = where + ", section [domain]";
-  const bool has_fluid = !domain.shape.outline.empty() || domain.shape.radius > 0;
-  if (!has_fluid) {
+  if (!has_fluid(domain)) {
     if (!problem.holes.empty() || !problem.boundaries.empty() || !domain.sides.empty()) {
       throw InputError("holes and boundaries need a domain", "no shape of the fluid's domain",
                        "\"outline_mm\" or \"radius_mm\"", at);
@@ -63,6 +63,16 @@ void check_domain(const ProblemStatement& problem, const std::string& where) {
   for (const auto& [name, hole] : problem.holes) {
     check_shape(hole.shape, where + ", section [hole." + name + "]");
   }
+}
+
+/// Nothing that a scene says is left out silently.
+void check_fluid_keys(const Scene& scene, const std::string& where) {
+  if (has_fluid(scene.problem.domain)) return;
+  for (const auto& [path, place] : scene.places)
+    if (is_of_fluid(path))
+      throw InputError("something is stated of a fluid, and there is none", in_quotes(path),
+                       "a domain, \"domain.outline_mm\" or \"domain.radius_mm\"; or no such key",
+                       place_of_key(scene, path, where));
 }
 
 void check_boundaries(const ProblemStatement& problem, const std::string& where) {
@@ -177,6 +187,7 @@ void check_statement(const Scene& scene, const std::string& where) {
                      "\"plane\" or \"axisymmetric\"", where + ", section [model]");
   }
   check_domain(scene.problem, where);
+  check_fluid_keys(scene, where);
   check_boundaries(scene.problem, where);
   check_bodies(scene.problem, where);
   check_observed(scene.problem, where);

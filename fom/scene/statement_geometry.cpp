@@ -55,9 +55,7 @@ public:
   }
 
 private:
-  bool has_fluid() const {
-    return !problem_.domain.shape.outline.empty() || problem_.domain.shape.radius > 0;
-  }
+  bool has_fluid() const { return fom::has_fluid(problem_.domain); }
   std::string at(const std::string& path) const { return place_of_key(scene_, path, name_); }
 
   std::vector<Point<2>> coarse(const ShapeStatement& shape, double size, bool body) const {
