@@ -7,12 +7,13 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
-#include "rom/base/text_file.hpp"
+#include "rom/base/replaced_file.hpp"
 
 namespace undula::fom {
 namespace {
 
 constexpr const char* format = "undula fields 1";
+constexpr std::chrono::seconds index_interval{1};
 
 void check_name(const std::string& name, const std::string& where) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
@@ -144,9 +145,18 @@ void FieldWriter<dim>::write(int step, double time, std::span<const NodalField> 
       file.write(path, std::span<const double>(three_components<dim>(field.values)), {points, 3}, field.unit);
   }
   if (mesh != nullptr) write_points_and_cells(file, *mesh);
-  file.commit();
+  file.commit_unsynced();
+  unsynced_.push_back(folder_ / entry.file);
   series_.steps.push_back(std::move(entry));
-  write_index();
+  // The index names every step so far: writing it each time would cost the square of their number.
+  if (std::chrono::steady_clock::now() - indexed_at_ >= index_interval) write_index();
+}
+
+template <int dim>
+void FieldWriter<dim>::sync() {
+  if (indexed_steps_ != series_.steps.size()) write_index();
+  sync_files(folder_, unsynced_);
+  unsynced_.clear();
 }
 
 template <int dim>
@@ -196,8 +206,14 @@ void FieldWriter<dim>::write_mesh(const FieldMesh<dim>& mesh) const {
 }
 
 template <int dim>
-void FieldWriter<dim>::write_index() const {
-  replace_text_file(folder_ / (series_.name + ".xdmf"), xdmf_text(series_));
+void FieldWriter<dim>::write_index() {
+  const auto name = folder_ / (series_.name + ".xdmf");
+  ReplacedFile index(name);
+  index.write(xdmf_text(series_));
+  index.commit_unsynced();
+  unsynced_.push_back(name);
+  indexed_at_ = std::chrono::steady_clock::now();
+  indexed_steps_ = series_.steps.size();
 }
 
 template class FieldWriter<2>;

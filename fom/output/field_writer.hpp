@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -32,7 +33,8 @@ struct NodalField {
 
 /// Writes one series: <name>.xdmf, to be opened in ParaView, <name>_mesh.h5 and one <name>_<step>.h5 per
 /// written step. Every file is replaced in one step and the XDMF comes last, so that a kill at any moment
-/// leaves a series that can be read. For one rank. Two-dimensional points and vectors get a third component
+/// leaves a series that can be read; the XDMF may then lack the last second. Files reach the disk by sync().
+/// For one rank. Two-dimensional points and vectors get a third component
 /// 0.
 template <int dim>
 class FieldWriter {
@@ -51,17 +53,23 @@ public:
   /// fields that do not fit the mesh, a name given twice or a step that is not later than the last one.
   void write(int step, double time, std::span<const NodalField> fields, const FieldMesh<dim>* mesh = nullptr);
 
+  /// Completes the index and brings all that was written to the disk: before a checkpoint that relies on it.
+  void sync();
+
 private:
   FieldWriter(std::filesystem::path folder, const std::string& name, const FieldMesh<dim>& mesh,
               const std::map<std::string, std::string>& provenance);
   std::map<int, std::filesystem::path> step_files() const;
   XdmfStep read_step(const std::filesystem::path& file) const;
   void write_mesh(const FieldMesh<dim>& mesh) const;
-  void write_index() const;
+  void write_index();
 
   std::filesystem::path folder_;
   std::map<std::string, std::string> provenance_;
   XdmfSeries series_;
+  std::vector<std::filesystem::path> unsynced_;           ///< written since the last sync()
+  std::chrono::steady_clock::time_point indexed_at_ = {}; ///< when the index was written
+  std::size_t indexed_steps_ = 0;
 };
 
 } // namespace undula::fom

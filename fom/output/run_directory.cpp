@@ -238,8 +238,10 @@ void RunDirectory::record(const State& state, const Observation& seen) {
 }
 
 std::filesystem::path RunDirectory::save_state(const State& state) {
+  if (fluid_writer_) fluid_writer_->sync();
+  if (solid_writer_) solid_writer_->sync();
   if (state.step == saved_step_ && !saved_file_.empty()) return saved_file_;
-  // A checkpoint relies on the rows up to its step: they reach the disk first.
+  // A checkpoint relies on the rows and fields up to its step: they reach the disk first.
   series_->sync();
   if (membrane_) membrane_->sync();
   saved(state.step, save_checkpoint(checkpoint_of(state, stamp_, provenance_), checkpoint_folder(folder_)));

@@ -277,7 +277,8 @@ Hdf5File Hdf5File::create(const std::filesystem::path& target) {
   return file;
 }
 
-void Hdf5File::commit() {
+/// The sealed content, under its temporary name.
+ReplacedFile Hdf5File::finished() {
   if (id_ < 0 || !written_)
     throw NumericsError("cannot complete file: it is not open for writing", target_.string(), "a new file");
   std::vector<std::byte> image;
@@ -297,8 +298,12 @@ void Hdf5File::commit() {
   ReplacedFile written = *std::exchange(written_, std::nullopt);
   written.write(seal_of(image));
   written.write(image);
-  written.commit();
+  return written;
 }
+
+void Hdf5File::commit() { finished().commit(); }
+
+void Hdf5File::commit_unsynced() { finished().commit_unsynced(); }
 
 void Hdf5File::write(const std::string& name, std::span<const double> values, const Shape& shape,
                      std::string_view unit) {

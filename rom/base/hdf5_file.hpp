@@ -52,6 +52,9 @@ public:
   /// afterwards.
   void commit();
 
+  /// The same without waiting for the disk, see ReplacedFile.
+  void commit_unsynced();
+
   /// Whether the file was opened with a look at its seal, and has one.
   bool sealed() const { return sealed_; }
 
@@ -115,6 +118,7 @@ public:
 
 private:
   Hdf5File(std::int64_t id, std::filesystem::path target);
+  ReplacedFile finished();
   void close() noexcept;
 
   std::int64_t id_ = -1;                // hid_t of the file, -1 when closed

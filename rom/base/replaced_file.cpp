@@ -28,6 +28,14 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
+/// Makes renames durable; some file systems refuse, which harms nothing.
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 } // namespace
 
 ReplacedFile::ReplacedFile(std::filesystem::path target) : target_(std::move(target)) {
@@ -73,9 +81,13 @@ void ReplacedFile::fail(int reason) {
                       "free space on the disk, then start again (`solve` with --restart)");
 }
 
-void ReplacedFile::write(std::string_view bytes) {
+void ReplacedFile::require_open() const {
   if (descriptor_ < 0)
     throw NumericsError("cannot write file: it is complete already", target_.string(), "a new file");
+}
+
+void ReplacedFile::write(std::string_view bytes) {
+  require_open();
   while (!bytes.empty()) {
     const auto count = ::write(descriptor_, bytes.data(), bytes.size());
     if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
@@ -87,19 +99,37 @@ void ReplacedFile::write(std::span<const std::byte> bytes) {
   write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-void ReplacedFile::commit() {
-  if (descriptor_ < 0)
-    throw NumericsError("cannot complete file: it is not open for writing", target_.string(), "a new file");
-  // Data first, then the name: a crash in between leaves the old target.
-  if (::fsync(descriptor_) != 0) fail(errno);
+void ReplacedFile::put_in_place() {
   if (::rename(partial_.c_str(), target_.c_str()) != 0) fail(errno);
   if (::close(std::exchange(descriptor_, -1)) != 0)
     throw NumericsError("cannot complete file: " + std::string(std::strerror(errno)), target_.string(),
                         "free space on the disk");
-  const int folder = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return;
-  ::fsync(folder); // makes the rename itself durable; some file systems refuse, which harms nothing
-  ::close(folder);
+}
+
+void ReplacedFile::commit() {
+  require_open();
+  // Data first, then the name: a crash in between leaves the old target.
+  if (::fsync(descriptor_) != 0) fail(errno);
+  put_in_place();
+  sync_folder(folder_of(target_));
+}
+
+void ReplacedFile::commit_unsynced() {
+  require_open();
+  put_in_place();
+}
+
+void sync_files(const std::filesystem::path& folder, std::span<const std::filesystem::path> files) {
+  for (const auto& file : files) {
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool synced = descriptor >= 0 && ::fsync(descriptor) == 0;
+    const int reason = errno;
+    if (descriptor >= 0) ::close(descriptor);
+    if (!synced)
+      throw NumericsError("cannot bring file to the disk: " + std::string(std::strerror(reason)),
+                          file.string(), "free space on the disk, then start again (`solve` with --restart)");
+  }
+  sync_folder(folder);
 }
 
 bool is_partial_of(std::string_view name, std::string_view target) {

@@ -29,16 +29,25 @@ public:
   /// Nothing may be written afterwards.
   void commit();
 
+  /// The same without waiting for the disk: what is there survives a kill of the process, not one of the
+  /// machine, until sync_files() has been called.
+  void commit_unsynced();
+
   bool open() const { return descriptor_ >= 0; }
   const std::filesystem::path& target() const { return target_; }
 
 private:
+  void require_open() const;
+  void put_in_place();
   void discard() noexcept;
   [[noreturn]] void fail(int reason);
 
   std::filesystem::path target_, partial_;
   int descriptor_ = -1;
 };
+
+/// Brings files of one folder, and their names, to the disk.
+void sync_files(const std::filesystem::path& folder, std::span<const std::filesystem::path> files);
 
 /// Whether the name is that of a file on its way to `target` (both without folder).
 bool is_partial_of(std::string_view name, std::string_view target);
