@@ -491,9 +491,17 @@ std::string file_text(const std::filesystem::path& file) {
     throw InputError("the scene cannot be read", "no readable file " + in_quotes(file.string()),
                      "a scene file (TOML), see docs/scene.md", "command line");
   }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  std::ostringstream buffer;
+  buffer << stream.rdbuf();
+  std::string text = buffer.str();
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(
+        "the scene is no text", "a binary file",
+        "a scene file (TOML), see docs/scene.md; a reduced model (.h5) is for undula hq, validate "
+        "and report",
+        file.string());
+  }
+  return text;
 }
 
 } // namespace

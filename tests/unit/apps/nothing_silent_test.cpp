@@ -1,6 +1,7 @@
 // What would be believed without a word is told: on stderr, in the answer, or by a refusal.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/apps.hpp"
@@ -37,6 +38,40 @@ TEST(NothingSilent, TheVersionNamesCommitAndLibraries) {
   for (const char* part : {"\ncommit ", "\nPETSc ", "\nSLEPc ", "\nMPI ", "\nCGAL ", "\nEigen ", "\nHDF5 "}) {
     EXPECT_EQ(occurrences(outcome.out, part), 1) << outcome.out;
   }
+}
+
+TEST(NothingSilent, AModelInPlaceOfASceneIsToldFromBadToml) {
+  const ScratchFolder folder;
+  for (const char* command : {"solve", "check", "train"}) {
+    const Outcome outcome = run_undula({command, root + "/data/models/wave_pump_fixed.h5"}, folder.path());
+    EXPECT_EQ(outcome.exit_code, 2) << command;
+    EXPECT_NE(outcome.err.find("a binary file"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(NothingSilent, CheckSaysWhereTheWeightsComeFrom) {
+  const ScratchFolder folder;
+  const auto origins = [&](const Words& settings) {
+    Words words = {"check", write_channel(folder), "--json"};
+    words.insert(words.end(), settings.begin(), settings.end());
+    const auto json = nlohmann::json::parse(run_undula(words, folder.path()).out);
+    std::map<std::string, std::string> origin;
+    for (const auto& weight : json.at("stabilisation")) {
+      origin[weight.at("key")] =
+          weight.at("value").get<std::string>() + " " + weight.at("origin").get<std::string>();
+    }
+    return origin;
+  };
+  auto derived = origins({});
+  EXPECT_EQ(derived["reference_velocity_cm_per_s"], "0.5 derived"); // the inflow has half grown at the end
+  EXPECT_EQ(derived["reference_time_s"], "0.01 derived");
+  EXPECT_EQ(derived["divergence"], "0.005 derived");
+  EXPECT_EQ(derived["velocity_scale"], "local derived");
+  auto stated =
+      origins({"--set", "stabilisation.weights=published", "--set", "stabilisation.divergence=0.2"});
+  EXPECT_EQ(stated["divergence"], "0.2 stated");
+  EXPECT_EQ(stated["velocity_jump"], "0.05 published");
+  EXPECT_EQ(stated["velocity_scale"], "reference published");
 }
 
 TEST(NothingSilent, CheckSaysWhatARunWouldBe) {
