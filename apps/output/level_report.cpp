@@ -1,13 +1,14 @@
 #include "apps/output/level_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/output/curve_report.hpp"
 #include "apps/output/gnuplot.hpp"
+#include "apps/output/label_places.hpp"
 #include "apps/output/text_table.hpp"
 #include "rom/base/text_file.hpp"
 
@@ -21,6 +22,18 @@ CurveDifference to_reference(const LevelReport& report, const LevelResult& resul
     return {std::nan(""), std::nan(""), 0};
   }
   return curve_difference(result.flow, report.results[static_cast<std::size_t>(result.reference)].flow);
+}
+
+/// Of a logarithmic axis, with room around the values of one column and `also`, where that is positive.
+std::pair<double, double> range_of(const std::vector<std::array<double, 2>>& places, std::size_t column,
+                                   double also) {
+  double low = also > 0 ? also : places.front()[column], high = low;
+  for (const auto& place : places) {
+    low = std::min(low, place[column]);
+    high = std::max(high, place[column]);
+  }
+  constexpr double room = 5;
+  return {low / room, high * room};
 }
 
 } // namespace
@@ -93,41 +106,61 @@ std::string level_report_json(const LevelReport& report) {
 bool plot_level_report(const std::filesystem::path& picture, const LevelReport& report) {
   // One block of the data file per level, so that each has its mark.
   std::map<std::string, std::string> blocks;
+  std::vector<std::array<double, 2>> places; // seconds, error
+  std::vector<LabelledMark> marks;
   int index = 1;
-  double fastest = std::numeric_limits<double>::infinity(), slowest = 0;
   for (const LevelResult& result : report.results) {
     const CurveDifference data = curve_difference(result.flow, report.measured);
-    if (data.points > 0) {
-      blocks[result.level] += plain_number(result.seconds_per_point) + " " + plain_number(data.rms) + " " +
-                              std::to_string(index) + "\n";
-      fastest = std::min(fastest, result.seconds_per_point);
-      slowest = std::max(slowest, result.seconds_per_point);
+    // Logarithmic axes have no place for 0.
+    if (data.points > 0 && data.rms > 0 && result.seconds_per_point > 0) {
+      blocks[result.level] += plain_number(result.seconds_per_point) + " " + plain_number(data.rms) + "\n";
+      places.push_back({result.seconds_per_point, data.rms});
+      marks.push_back({0, 0, std::to_string(index)});
     }
     ++index;
   }
   if (blocks.empty()) {
     return false;
   }
+  // Both axes are logarithmic; the picture holds about this many columns and lines of text.
+  constexpr std::array<double, 2> extent = {62, 28};
+  const std::array<std::pair<double, double>, 2> ranges = {range_of(places, 0, 0),
+                                                           range_of(places, 1, report.scatter_l_per_min)};
+  const auto part = [&](std::size_t axis, double value) {
+    return std::log(value / ranges[axis].first) / std::log(ranges[axis].second / ranges[axis].first);
+  };
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    marks[i].x = extent[0] * part(0, places[i][0]);
+    marks[i].y = extent[1] * part(1, places[i][1]);
+  }
+  const auto offsets = label_offsets(marks);
+  std::string labels;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    labels += "set label " + gnuplot_string(marks[i].text) + " at " + plain_number(places[i][0]) + "," +
+              plain_number(places[i][1]) + " center offset " + plain_number(offsets[i].first) + "," +
+              plain_number(offsets[i].second) + "\n";
+  }
   std::string data, items;
   int block = 0;
   for (const auto& [level, lines] : blocks) {
     data += (block == 0 ? "" : "\n\n") + lines;
-    const std::string which = "data index " + std::to_string(block);
-    items += which + " using 1:2 with points pt 7 ps 1.5 lc " + std::to_string(block + 1) + " title " +
-             gnuplot_string(level) + ", \\\n  " + which +
-             " using 1:2:3 with labels offset 1,0.7 notitle, \\\n  ";
+    items += "data index " + std::to_string(block) + " using 1:2 with points pt 7 ps 1.5 lc " +
+             std::to_string(block + 1) + " title " + gnuplot_string(level) + ", \\\n  ";
     ++block;
   }
   const std::string scatter = plain_number(report.scatter_l_per_min);
   const std::string title = "Speed against error: " + plain_number(report.frequency_Hz) + " Hz, stroke " +
                             plain_number(report.stroke_mm) + " mm";
+  const auto range_text = [&](std::size_t axis) {
+    return "[" + plain_number(ranges[axis].first) + ":" + plain_number(ranges[axis].second) + "]\n";
+  };
   return draw_picture(picture, data,
                       "set title " + gnuplot_string(title) +
                           "\nset xlabel 'seconds per operating point'"
                           "\nset ylabel 'rms error of the flow against the data (l/min)'"
-                          "\nset logscale xy\nset grid\nset key outside below\nset xrange [" +
-                          plain_number(fastest / 5) + ":" + plain_number(slowest * 5) + "]\nplot \\\n  " +
-                          items + scatter + " with lines dt 2 lc rgb 'gray' title 'scatter of the data'\n");
+                          "\nset logscale xy\nset grid\nset key outside right top\nset xrange " +
+                          range_text(0) + "set yrange " + range_text(1) + labels + "plot \\\n  " + items +
+                          scatter + " with lines dt 2 lc rgb 'gray' title 'scatter of the data'\n");
 }
 
 } // namespace undula::apps
