@@ -24,6 +24,7 @@
 #include "fom/scene/scene_tolerance.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "rom/base/units.hpp"
 
 namespace undula::apps {
 namespace {
@@ -32,7 +33,7 @@ struct CalibrateOptions {
   std::string scene;
   std::vector<std::string> overrides;
   std::vector<std::string> data;
-  std::optional<double> frequency_Hz, stroke_mm;
+  std::optional<double> frequency_Hz, stroke_mm, voltage_V;
   std::vector<std::string> free;
   std::string output;
   bool force = false;
@@ -74,11 +75,20 @@ double setting(const std::optional<double>& given, const std::optional<double>& 
   return given ? *given : *stated;
 }
 
-std::vector<TargetCurve> make_targets(const CalibrateOptions& options,
+std::vector<TargetCurve> make_targets(const CalibrateOptions& options, const Scene& scene,
                                       std::span<const MeasuredCurve> measured) {
-  if (options.data.size() > 1 && (options.frequency_Hz || options.stroke_mm)) {
-    throw InputError("one frequency or stroke cannot serve several data files",
-                     std::to_string(options.data.size()) + " files with --frequency or --stroke",
+  const bool by_voltage = scene.operating_point.drive == Drive::voltage;
+  if (by_voltage && options.stroke_mm) {
+    throw InputError("a voltage drives the scene", "--stroke " + plain_number(*options.stroke_mm),
+                     "--voltage, or operating_point.drive = \"stroke\"", "--stroke");
+  }
+  if (!by_voltage && options.voltage_V) {
+    throw InputError("a stroke drives the scene", "--voltage " + plain_number(*options.voltage_V),
+                     "--stroke, or operating_point.drive = \"voltage\"", "--voltage");
+  }
+  if (options.data.size() > 1 && (options.frequency_Hz || options.stroke_mm || options.voltage_V)) {
+    throw InputError("one frequency, stroke or voltage cannot serve several data files",
+                     std::to_string(options.data.size()) + " files with --frequency, --stroke or --voltage",
                      "one file, or files that state both themselves", "--data");
   }
   std::vector<TargetCurve> targets;
@@ -88,8 +98,16 @@ std::vector<TargetCurve> make_targets(const CalibrateOptions& options,
     target.name = options.data[c];
     target.frequency_Hz =
         setting(options.frequency_Hz, curve.frequency_Hz, "frequency_Hz", "--frequency", target.name);
-    target.stroke_mm = setting(options.stroke_mm, curve.stroke_mm, "stroke_mm", "--stroke", target.name);
-    warn_of_other_point(curve, target.name, "--frequency or --stroke", target.frequency_Hz, target.stroke_mm);
+    OperatingPoint asked = scene.operating_point;
+    asked.frequency = target.frequency_Hz;
+    if (by_voltage) {
+      target.voltage_V = setting(options.voltage_V, curve.voltage_V, "voltage_V", "--voltage", target.name);
+      asked.voltage = target.voltage_V;
+    } else {
+      target.stroke_mm = setting(options.stroke_mm, curve.stroke_mm, "stroke_mm", "--stroke", target.name);
+      asked.stroke = units::length_from_mm(target.stroke_mm);
+    }
+    warn_of_other_point(curve, target.name, "the command line", asked);
     target.head_mmHg = even_heads(curve.head_mmHg.front(), curve.head_mmHg.back(), options.points);
     for (const double head : target.head_mmHg) {
       target.flow_l_per_min.push_back(curve.fit(head));
@@ -131,7 +149,7 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
   for (const std::string& file : options.data) {
     measured.push_back(read_measured_curve(file));
   }
-  const std::vector<TargetCurve> targets = make_targets(options, measured);
+  const std::vector<TargetCurve> targets = make_targets(options, scene, measured);
 
   // 2. The fit: every set of values gives all curves.
   int rank = 0;
@@ -205,6 +223,8 @@ void add_calibrate_command(CLI::App& app) {
       ->add_option("--frequency", options->frequency_Hz, "frequency of the data, Hz, in place of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--stroke", options->stroke_mm, "stroke of the data, mm, in place of the file's")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--voltage", options->voltage_V, "voltage of the data, V, in place of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");

@@ -41,6 +41,7 @@ struct HqCommandOptions {
   std::string file;
   std::optional<double> frequency_Hz;
   std::optional<double> stroke_mm;
+  std::optional<double> voltage_V;
   std::string heads;
   std::string data;
   std::string runs;
@@ -90,8 +91,8 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
   if (!options.picture.empty()) {
     check_picture_name(options.picture);
   }
-  const LevelSource source =
-      read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm);
+  const LevelSource source = read_level_source(options.file, options.overrides, options.frequency_Hz,
+                                               options.stroke_mm, options.voltage_V);
   const Scene& scene = source.scene;
   if (options.band && source.model) {
     throw InputError("a reduced model states no tolerances of its inputs", "--band",
@@ -112,7 +113,7 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
                stroke_mm = units::length_to_mm(scene.operating_point.stroke);
   const std::string asked = source.model ? "the model" : "the scene";
   if (measured) {
-    warn_of_other_point(*measured, options.data, asked, frequency_Hz, stroke_mm);
+    warn_of_other_point(*measured, options.data, asked, scene.operating_point);
   }
   std::vector<RecordedCurve> recorded;
   if (!options.runs.empty()) {
@@ -190,7 +191,12 @@ void add_hq_command(CLI::App& app) {
       ->required();
   command->add_option("--frequency", options->frequency_Hz,
                       "frequency of the actuator, Hz; a scene has its own");
-  command->add_option("--stroke", options->stroke_mm, "amplitude of the actuator, mm; a scene has its own");
+  CLI::Option* stroke = command->add_option("--stroke", options->stroke_mm,
+                                            "amplitude of the actuator, mm; a scene has its own");
+  command
+      ->add_option("--voltage", options->voltage_V,
+                   "of a scene: amplitude of the voltage that drives its actuator, V")
+      ->excludes(stroke);
   command->add_option(
       "--head", options->heads,
       "heads in mmHg, low:high:step or a list with commas; default: 12 over the training box");

@@ -24,6 +24,7 @@
 #include "fom/output/root_rank.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "rom/base/units.hpp"
 
 namespace undula::apps {
 namespace {
@@ -124,7 +125,10 @@ void report(const ReportOptions& options, MPI_Comm comm) {
     check_picture_name(options.picture);
   }
   const MeasuredCurve measured = read_measured_curve(options.data);
-  warn_of_other_point(measured, options.data, "the report", options.frequency_Hz, options.stroke_mm);
+  OperatingPoint asked;
+  asked.frequency = options.frequency_Hz;
+  asked.stroke = units::length_from_mm(options.stroke_mm);
+  warn_of_other_point(measured, options.data, "the report", asked);
   std::vector<Variation> variations;
   for (const std::string& text : options.variations) {
     variations.push_back(parse_variation(text));

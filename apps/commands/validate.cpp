@@ -22,6 +22,7 @@
 #include "apps/output/plots.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
@@ -35,6 +36,7 @@ struct ValidateOptions {
   std::string data;
   std::optional<double> frequency_Hz;
   std::optional<double> stroke_mm;
+  std::optional<double> voltage_V;
   std::string heads;
   int points = 3;
   std::string picture;
@@ -112,11 +114,11 @@ Comparison read_comparison(const ValidateOptions& options) {
 void run(const ValidateOptions& options, MPI_Comm comm) {
   // 1. Read the measured curve and the scene or model; choose the heads.
   const Comparison comparison = read_comparison(options);
-  const LevelSource source =
-      read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm);
+  const LevelSource source = read_level_source(options.file, options.overrides, options.frequency_Hz,
+                                               options.stroke_mm, options.voltage_V);
   const Scene& scene = source.scene;
   warn_of_other_point(comparison.curve, options.data, source.model ? "the model" : "the scene",
-                      scene.operating_point.frequency, units::length_to_mm(scene.operating_point.stroke));
+                      scene.operating_point);
 
   // 2. Meshes and operators, coefficients, or modes, shared by all heads.
   PhaseTimer timer;
@@ -142,8 +144,7 @@ void run(const ValidateOptions& options, MPI_Comm comm) {
     std::cout << (options.json ? json_text(validation, comparison.curve.fit) : table_text(validation));
     if (!options.picture.empty()) {
       plot(options.picture, comparison.curve, validation,
-           level->name() + ": " + plain_number(scene.operating_point.frequency) + " Hz, stroke " +
-               plain_number(units::length_to_mm(scene.operating_point.stroke)) + " mm");
+           level->name() + ": " + setting_text(scene.operating_point));
     }
   });
 }
@@ -158,7 +159,12 @@ void add_validate_command(CLI::App& app) {
   command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)")->required();
   command->add_option("--frequency", options->frequency_Hz,
                       "frequency of the actuator, Hz; of a scene: its own");
-  command->add_option("--stroke", options->stroke_mm, "amplitude of the actuator, mm; of a scene: its own");
+  CLI::Option* stroke = command->add_option("--stroke", options->stroke_mm,
+                                            "amplitude of the actuator, mm; of a scene: its own");
+  command
+      ->add_option("--voltage", options->voltage_V,
+                   "of a scene: amplitude of the voltage that drives its actuator, V")
+      ->excludes(stroke);
   CLI::Option* heads =
       command->add_option("--head", options->heads, "heads in mmHg, low:high:step or a list with commas");
   command->add_option("--points", options->points, "number of heads, spread over the measured range")

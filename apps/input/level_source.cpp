@@ -55,7 +55,12 @@ void warn_of_profile(const Scene& scene) {
 
 LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
                               const std::optional<double>& frequency_Hz,
-                              const std::optional<double>& stroke_mm) {
+                              const std::optional<double>& stroke_mm,
+                              const std::optional<double>& voltage_V) {
+  if (!is_scene(file) && voltage_V) {
+    throw InputError("a reduced model of this version is driven by a stroke",
+                     "--voltage " + exact_number(*voltage_V), "--stroke, or a scene with [actuator]", file);
+  }
   if (!is_scene(file)) {
     return read_model_source(file, overrides, frequency_Hz, stroke_mm);
   }
@@ -64,6 +69,10 @@ LevelSource read_level_source(const std::string& file, std::vector<std::string> 
   }
   if (stroke_mm) {
     overrides.push_back("operating_point.stroke_mm=" + exact_number(*stroke_mm));
+  }
+  if (voltage_V) {
+    overrides.emplace_back("operating_point.drive=voltage");
+    overrides.push_back("operating_point.voltage_V=" + exact_number(*voltage_V));
   }
   LevelSource source;
   source.file = file;

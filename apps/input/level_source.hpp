@@ -27,12 +27,14 @@ bool is_scene(const std::string& file);
 /// Logs what the profile of a scene states otherwise than the scene.
 void warn_of_profile(const Scene& scene);
 
-/// Reads a scene of a pump with `--set` overrides, then `--frequency` and `--stroke` where they are given; or
+/// Reads a scene of a pump with `--set` overrides, then `--frequency`, `--stroke` and `--voltage` (which
+/// drives the actuator of the scene) where they are given; or
 /// a reduced model, which needs frequency and stroke and has no keys to override. Throws InputError (or
 /// CLI::RequiredError for a missing frequency or stroke) for anything else.
 LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
                               const std::optional<double>& frequency_Hz,
-                              const std::optional<double>& stroke_mm);
+                              const std::optional<double>& stroke_mm,
+                              const std::optional<double>& voltage_V = {});
 
 /// The level of a source. Phases as prepare_level. Collective over `comm`.
 std::unique_ptr<Level> prepare(const LevelSource& source, MPI_Comm comm, PhaseTimer& timer);

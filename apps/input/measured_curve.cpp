@@ -15,8 +15,10 @@
 #include <tuple>
 #include <utility>
 
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "rom/base/units.hpp"
 
 namespace undula::apps {
 namespace {
@@ -130,6 +132,7 @@ MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
       if (!has_header) {
         read_setting(text, "frequency_Hz", curve.frequency_Hz, where);
         read_setting(text, "stroke_mm", curve.stroke_mm, where);
+        read_setting(text, "voltage_V", curve.voltage_V, where);
       }
       continue;
     }
@@ -163,24 +166,27 @@ MeasuredCurve read_measured_curve(const std::filesystem::path& file) {
 }
 
 std::string other_operating_point(const MeasuredCurve& curve, const std::string& file,
-                                  const std::string& what, double frequency_Hz, double stroke_mm) {
+                                  const std::string& what, const OperatingPoint& point) {
   const auto differs = [](const std::optional<double>& stated, double asked) {
     return stated && std::abs(*stated - asked) > 1e-6 * std::abs(asked);
   };
-  if (!differs(curve.frequency_Hz, frequency_Hz) && !differs(curve.stroke_mm, stroke_mm)) {
+  const bool by_voltage = point.drive == Drive::voltage;
+  const auto& drive = by_voltage ? curve.voltage_V : curve.stroke_mm;
+  if (!differs(curve.frequency_Hz, point.frequency) &&
+      !differs(drive, by_voltage ? point.voltage : units::length_to_mm(point.stroke))) {
     return "";
   }
   const auto stated = [](const std::optional<double>& value, const char* unit) {
     return (value ? exact_number(*value) : std::string("unstated")) + unit;
   };
   return file + " was measured at another operating point: " + stated(curve.frequency_Hz, " Hz") +
-         ", stroke " + stated(curve.stroke_mm, " mm") + "; " + what + " has " + exact_number(frequency_Hz) +
-         " Hz, " + exact_number(stroke_mm) + " mm";
+         (by_voltage ? ", " : ", stroke ") + stated(drive, by_voltage ? " V" : " mm") + "; " + what +
+         " has " + setting_text(point);
 }
 
 void warn_of_other_point(const MeasuredCurve& curve, const std::string& file, const std::string& what,
-                         double frequency_Hz, double stroke_mm) {
-  const std::string sentence = other_operating_point(curve, file, what, frequency_Hz, stroke_mm);
+                         const OperatingPoint& point) {
+  const std::string sentence = other_operating_point(curve, file, what, point);
   if (!sentence.empty()) {
     spdlog::warn("{}", sentence);
   }

@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/apps.hpp"
+#include "fom/scene/scene.hpp"
+
 namespace undula::apps {
 
 /// Q(H) = c0 + c1 H + c2 H^2, H in mmHg, Q in l/min.
@@ -24,7 +27,8 @@ struct MeasuredCurve {
   std::vector<double> head_mmHg;
   std::vector<double> flow_l_per_min; ///< same length
   QuadraticFit fit;
-  std::optional<double> frequency_Hz, stroke_mm; ///< the pump was driven with, where the file states them
+  std::optional<double> frequency_Hz, stroke_mm,
+      voltage_V; ///< the pump was driven with, where the file states them
 };
 
 /// One head of a measured curve: what the fit gives there, and what its nearest sample measured.
@@ -36,21 +40,23 @@ struct ExtractedPoint {
 };
 
 /// Reads a CSV file with the header line `head_mmHg,flow_l_per_min`, one sample per line; lines that start
-/// with # and empty lines are skipped, but for `# frequency_Hz = 120` and `# stroke_mm = 0.53` (or with a
-/// colon) before the header. What spreadsheets write is read alike: a byte order mark, UTF-16 with one,
-/// quotes around fields, signs in front of numbers, rows of commas alone. Throws InputError with file and
-/// line for a missing file, another header, a frequency or stroke that is not a positive number or stated
-/// twice, a line that is not two finite numbers, and for fewer than three different heads.
+/// with # and empty lines are skipped, but for `# frequency_Hz = 120`, `# stroke_mm = 0.53` and
+/// `# voltage_V = 40` (or with a colon) before the header. What spreadsheets write is read alike: a byte
+/// order mark, UTF-16 with one, quotes around fields, signs in front of numbers, rows of commas alone. Throws
+/// InputError with file and line for a missing file, another header, a frequency or stroke that is not a
+/// positive number or stated twice, a line that is not two finite numbers, and for fewer than three different
+/// heads.
 MeasuredCurve read_measured_curve(const std::filesystem::path& file);
 
-/// A sentence for the log where the file states another frequency or stroke than `what` has; empty where it
-/// states the same, or nothing. A curve of another operating point says nothing of what it is put beside.
+/// A sentence for the log where the file states another frequency, or another stroke or voltage, whichever
+/// drives, than `what` has; empty where it states the same, or nothing. A curve of another operating point
+/// says nothing of what it is put beside.
 std::string other_operating_point(const MeasuredCurve& curve, const std::string& file,
-                                  const std::string& what, double frequency_Hz, double stroke_mm);
+                                  const std::string& what, const OperatingPoint& point);
 
 /// Logs it, unless it is empty.
 void warn_of_other_point(const MeasuredCurve& curve, const std::string& file, const std::string& what,
-                         double frequency_Hz, double stroke_mm);
+                         const OperatingPoint& point);
 
 /// Least-squares parabola through samples (same lengths, at least three different heads).
 QuadraticFit fit_quadratic(std::span<const double> head_mmHg, std::span<const double> flow_l_per_min);

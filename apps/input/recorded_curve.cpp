@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "rom/base/error.hpp"
@@ -14,7 +15,7 @@ RecordedCurve read_recorded_curve(const std::filesystem::path& file) {
     const auto json = nlohmann::json::parse(read_text_file(file));
     RecordedCurve curve;
     curve.frequency_Hz = json.at("frequency_Hz").get<double>();
-    curve.stroke_mm = json.at("stroke_mm").get<double>();
+    curve.stroke_mm = json.value("stroke_mm", std::numeric_limits<double>::quiet_NaN()); // NaN: by a voltage
     curve.unknowns = json.at("unknowns").get<int>();
     double seconds = 0;
     for (const auto& [phase, spent] : json.at("preparation_seconds").items()) {

@@ -197,7 +197,8 @@ std::string calibration_json(const CalibrationReport& report) {
     }
     result["curves"].push_back({{"data", target.name},
                                 {"frequency_Hz", target.frequency_Hz},
-                                {"stroke_mm", target.stroke_mm},
+                                {target.voltage_V > 0 ? "voltage_V" : "stroke_mm",
+                                 target.voltage_V > 0 ? target.voltage_V : target.stroke_mm},
                                 {"head_mmHg", target.head_mmHg},
                                 {"measured_l_per_min", target.flow_l_per_min},
                                 {"start_l_per_min", curve.start_l_per_min},
@@ -235,12 +236,11 @@ std::string calibrated_scene_text(const CalibrationReport& report, const std::fi
   for (std::size_t c = 0; c < report.targets.size(); ++c) {
     const TargetCurve& target = report.targets[c];
     const CalibratedCurve& curve = report.calibration.curves[c];
-    text += "# data: " + short_name(target) + " (" + plain_number(target.frequency_Hz) + " Hz, " +
-            plain_number(target.stroke_mm) + " mm) at " + std::to_string(target.head_mmHg.size()) +
-            " heads from " + plain_number(target.head_mmHg.front()) + " to " +
-            plain_number(target.head_mmHg.back()) + " mmHg; rms of computed - measured " +
-            decimals(curve.start_rms_l_per_min, 4) + " l/min before, " +
-            decimals(curve.optimum_rms_l_per_min, 4) + " after; scatter of the data " +
+    text += "# data: " + short_name(target) + " (" + setting_text(target) + ") at " +
+            std::to_string(target.head_mmHg.size()) + " heads from " +
+            plain_number(target.head_mmHg.front()) + " to " + plain_number(target.head_mmHg.back()) +
+            " mmHg; rms of computed - measured " + decimals(curve.start_rms_l_per_min, 4) +
+            " l/min before, " + decimals(curve.optimum_rms_l_per_min, 4) + " after; scatter of the data " +
             decimals(target.scatter_l_per_min, 4) + "\n";
   }
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
@@ -274,8 +274,7 @@ bool plot_calibration(const std::filesystem::path& picture, const CalibrationRep
     const TargetCurve& target = report.targets[c];
     const CalibratedCurve& curve = report.calibration.curves[c];
     const std::string colour = std::string(" lc rgb '") + colours[c % colours.size()] + "'";
-    const std::string at =
-        plain_number(target.frequency_Hz) + " Hz, " + plain_number(target.stroke_mm) + " mm";
+    const std::string at = setting_text(target);
     add(measured[c].flow_l_per_min, measured[c].head_mmHg, "points pt 6 ps 0.7" + colour, at + ", measured");
     add(curve.start_l_per_min, target.head_mmHg, "lines dt 2 lw 1.5" + colour, at + ", before");
     add(curve.optimum_l_per_min, target.head_mmHg, "linespoints pt 7 ps 0.8 lw 2" + colour,

@@ -6,6 +6,7 @@
 
 #include "apps/output/plots.hpp"
 #include "apps/output/text_table.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
@@ -30,6 +31,17 @@ constexpr Column columns[] = {{"error (l/min)", &CurvePoint::error_l_per_min, 3,
                               {"spread (l/min)", &CurvePoint::spread_l_per_min, 4, "failed"},
                               {"max speed (cm/s)", &CurvePoint::speed_max_cm_per_s, 1, "failed"},
                               {"min clearance (mm)", &CurvePoint::clearance_min_mm, 3, "failed"}};
+
+/// Of a holder that is free to move.
+constexpr Column drive_columns[] = {
+    {"stroke (mm)", &CurvePoint::stroke_mm, 4, "failed"},
+    {"phase (degrees)", &CurvePoint::phase_degrees, 1, "failed"},
+    {"offset (mm)", &CurvePoint::offset_mm, 4, "failed"},
+    {"reaction in phase (N/mm)", &CurvePoint::reaction_in_phase_N_per_mm, 2, "failed"},
+    {"in quadrature (N/mm)", &CurvePoint::reaction_quadrature_N_per_mm, 2, "failed"},
+    {"actuator (mW)", &CurvePoint::actuator_power_mW, 0, "failed"},
+    {"electrical (mW)", &CurvePoint::electrical_power_mW, 0, "failed"},
+    {"efficiency (%)", &CurvePoint::efficiency_percent, 1, "failed"}};
 
 /// Whether any point knows it; an infinite error is known to be unknown.
 bool is_known(const Column& column, std::span<const CurvePoint> points) {
@@ -76,6 +88,10 @@ std::string curve_table(const CurveReport& report) {
   std::vector<Column> shown;
   std::ranges::copy_if(columns, std::back_inserter(shown),
                        [&](const Column& column) { return is_known(column, report.points); });
+  if (report.scene.operating_point.drive == Drive::voltage) {
+    std::ranges::copy_if(drive_columns, std::back_inserter(shown),
+                         [&](const Column& column) { return is_known(column, report.points); });
+  }
   for (const Column& column : shown) {
     header.emplace_back(column.title);
   }
@@ -165,6 +181,14 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
   entry["spread_l_per_min"] = finite_or_null(point.spread_l_per_min);
   entry["hydraulic_power_mW"] = finite_or_null(point.power_mW);
   entry["holder_power_mW"] = finite_or_null(point.holder_power_mW);
+  entry["holder"] = {{"stroke_mm", finite_or_null(point.stroke_mm)},
+                     {"phase_degrees", finite_or_null(point.phase_degrees)},
+                     {"offset_mm", finite_or_null(point.offset_mm)},
+                     {"reaction_in_phase_N_per_mm", finite_or_null(point.reaction_in_phase_N_per_mm)},
+                     {"reaction_quadrature_N_per_mm", finite_or_null(point.reaction_quadrature_N_per_mm)},
+                     {"actuator_power_mW", finite_or_null(point.actuator_power_mW)},
+                     {"electrical_power_mW", finite_or_null(point.electrical_power_mW)},
+                     {"efficiency_percent", finite_or_null(point.efficiency_percent)}};
   entry["speed_max_cm_per_s"] = finite_or_null(point.speed_max_cm_per_s);
   entry["clearance_min_mm"] = finite_or_null(point.clearance_min_mm);
   entry["periods"] = point.periods;
@@ -204,7 +228,11 @@ std::string curve_json(const CurveReport& report) {
   }
   result["unknowns"] = report.unknowns;
   result["frequency_Hz"] = scene.operating_point.frequency;
-  result["stroke_mm"] = stroke_mm(scene);
+  if (scene.operating_point.drive == Drive::voltage) {
+    result["voltage_V"] = scene.operating_point.voltage;
+  } else {
+    result["stroke_mm"] = stroke_mm(scene);
+  }
   result["seconds"] = report.seconds;
   result["preparation_seconds"] = nlohmann::ordered_json::object();
   for (const auto& [phase, record] : report.preparation.records()) {
@@ -269,8 +297,7 @@ bool plot_curve_report(const std::filesystem::path& picture, const CurveReport& 
   if (report.measured != nullptr) {
     point_sets.push_back({"measured", report.measured->head_mmHg, report.measured->flow_l_per_min});
   }
-  const std::string title = report.scene.name + ": " + plain_number(report.scene.operating_point.frequency) +
-                            " Hz, stroke " + plain_number(stroke_mm(report.scene)) + " mm";
+  const std::string title = report.scene.name + ": " + setting_text(report.scene.operating_point);
   const char* band = report.band != nullptr ? "by tolerances of the inputs (95 %)" : "error estimate";
   return plot_hq_curve(picture, title, {report.level, head, flow, error, band}, point_sets);
 }

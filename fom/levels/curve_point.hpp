@@ -20,6 +20,16 @@ struct CurvePoint {
   std::optional<bool> inside_training_box; ///< of a reduced model; nothing for other levels
   double power_mW = unknown;               ///< hydraulic: head times flow
   double holder_power_mW = unknown;        ///< put in by the actuator
+  double stroke_mm = unknown;              ///< amplitude of the holder's fundamental
+  double phase_degrees = unknown;          ///< of the holder behind the drive
+  double offset_mm = unknown;              ///< mean displacement of the holder
+  /// Force of the holder on membrane and fluid per stroke, fundamentals: in phase with the displacement and
+  /// a quarter of a period ahead of it.
+  double reaction_in_phase_N_per_mm = unknown, reaction_quadrature_N_per_mm = unknown;
+  double actuator_power_mW = unknown; ///< of Drive::voltage
+  double efficiency_percent =
+      unknown; ///< hydraulic power of that put in: by the coil, else the actuator, else the holder
+  double electrical_power_mW = unknown; ///< of Drive::voltage with the resistance of the coil
   double speed_max_cm_per_s = unknown, clearance_min_mm = unknown;
   int periods = 0; ///< computed at this head
   bool periodic = false;

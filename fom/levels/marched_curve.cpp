@@ -1,6 +1,9 @@
 #include "fom/levels/marched_curve.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
 #include <numeric>
 
 #include "fom/output/last_periods.hpp"
@@ -110,6 +113,25 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   point.spread_l_per_min = last_periods(cycles, "outflow_l_per_min").spread;
   point.power_mW = mean("hydraulic_power_mW");
   point.holder_power_mW = mean("holder_power_mW");
+  // Phasors: a sin + b cos is the imaginary part of (a + i b) exp(i phase).
+  const std::complex<double> holder(mean("holder_sine_mm"), mean("holder_cosine_mm"));
+  const std::complex<double> force(mean("holder_force_sine_N"), mean("holder_force_cosine_N"));
+  point.stroke_mm = std::abs(holder);
+  point.offset_mm = mean("holder_mm");
+  if (point.stroke_mm > 0) {
+    point.phase_degrees = -std::arg(holder) * 180 / std::numbers::pi;
+    if (std::abs(force) > 0) {
+      point.reaction_in_phase_N_per_mm = (force / holder).real();
+      point.reaction_quadrature_N_per_mm = (force / holder).imag();
+    }
+  }
+  if (const double power = mean("actuator_power_mW"); power != 0) point.actuator_power_mW = power;
+  if (const double power = mean("electrical_power_mW"); power != 0) point.electrical_power_mW = power;
+  for (const double power : {point.electrical_power_mW, point.actuator_power_mW, point.holder_power_mW})
+    if (std::isfinite(power) && power > 0) {
+      point.efficiency_percent = 100 * point.power_mW / power;
+      break;
+    }
   point.speed_max_cm_per_s = std::ranges::max(last_of(cycles.maximum, "speed_max_cm_per_s"));
   point.clearance_min_mm = std::ranges::min(last_of(cycles.minimum, "clearance_min_mm"));
   return point;

@@ -1,6 +1,8 @@
 #include "fom/levels/periodic_run.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <numbers>
 
 #include "fom/levels/period_check.hpp"
 #include "fom/scene/scene_time.hpp"
@@ -10,21 +12,32 @@
 namespace undula::fom {
 namespace {
 
-/// Steps are counted from the first of this march.
-void append(TimeSeries& series, const Observation& seen) {
-  constexpr double mW_per_erg_per_s = 1e-4;
+/// Steps are counted from the first of this march. The means of a signal times 2 sin and 2 cos of the drive's
+/// phase are the coefficients of its fundamental.
+void append(TimeSeries& series, const Observation& seen, double frequency) {
+  constexpr double mW_per_erg_per_s = 1e-4, newton_per_dyn = 1e-5;
   series.steps.push_back(static_cast<int>(series.rows()) + 1);
-  for (const double value : {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
-                             seen.hydraulic_power * mW_per_erg_per_s, seen.energy.holder * mW_per_erg_per_s,
-                             seen.speed_max, units::length_to_mm(seen.clearance_min)})
+  const double phase = 2 * std::numbers::pi * frequency * seen.time;
+  const double sine = 2 * std::sin(phase), cosine = 2 * std::cos(phase);
+  const double place = units::length_to_mm(seen.holder.displacement),
+               force = newton_per_dyn * seen.holder.force;
+  for (const double value :
+       {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
+        seen.hydraulic_power * mW_per_erg_per_s, seen.energy.holder * mW_per_erg_per_s, seen.speed_max,
+        units::length_to_mm(seen.clearance_min), place, place * sine, place * cosine, force * sine,
+        force * cosine, seen.holder.actuator_power * mW_per_erg_per_s,
+        seen.holder.electrical_power * mW_per_erg_per_s})
     series.values.push_back(value);
 }
 
 } // namespace
 
 std::vector<std::string> cycle_columns() {
-  return {"outflow_l_per_min", "inflow_l_per_min",   "hydraulic_power_mW",
-          "holder_power_mW",   "speed_max_cm_per_s", "clearance_min_mm"};
+  return {"outflow_l_per_min",   "inflow_l_per_min",      "hydraulic_power_mW",
+          "holder_power_mW",     "speed_max_cm_per_s",    "clearance_min_mm",
+          "holder_mm",           "holder_sine_mm",        "holder_cosine_mm",
+          "holder_force_sine_N", "holder_force_cosine_N", "actuator_power_mW",
+          "electrical_power_mW"};
 }
 
 PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State& state,
@@ -43,7 +56,7 @@ PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State
       const bool ramped = state.time < ramp_end - time_step(scene) / 2;
       check->begin(state);
       march_to(*marcher, state.step + steps, state, [&](const State& now, const Observation& seen) {
-        append(series, seen);
+        append(series, seen, scene.operating_point.frequency);
         check->step(now, seen);
         if (on_step) on_step(now, seen);
       });

@@ -29,8 +29,9 @@ std::unique_ptr<Marcher> ThinGapLevel::start(const Scene& scene, const State&, P
   return std::make_unique<ThinGapMarcher>(model_, scene, timer);
 }
 
-LevelView ThinGapLevel::view(const Scene&) const {
+LevelView ThinGapLevel::view(const Scene& scene) const {
   LevelView view;
+  view.rows.voltage = scene.operating_point.drive == Drive::voltage;
   view.probes = membrane_probes(model_, membrane_probe_count);
   view.fluid = fluid_picture(model_);
   view.solids = solid_picture(model_);

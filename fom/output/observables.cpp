@@ -148,7 +148,7 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   if (!plan.probes.radius.empty()) {
     const Eigen::VectorXd axial = plan.probes.axial_displacement(state.d[0]);
     seen.tip_displacement = axial[0];
-    seen.holder_displacement = axial[axial.size() - 1];
+    seen.holder.displacement = axial[axial.size() - 1];
   }
   return seen;
 }

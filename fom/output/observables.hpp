@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fom/coupling/motion_report.hpp"
+#include "fom/output/holder_observation.hpp"
 #include "fom/scene/general_observables.hpp"
 #include "geometry/mesh/segments.hpp"
 
@@ -27,14 +28,14 @@ struct Observation {
   double inflow = 0;          ///< into the inlet, cm^3/s
   double hydraulic_power = 0; ///< head times outflow, erg/s
   EnergyTerms energy;
-  double speed_max = 0;           ///< cm/s
-  double wall_shear_max = 0;      ///< dyn/cm^2, over the housing and stator
-  double wall_shear_mean = 0;     ///< dyn/cm^2, area mean
-  double clearance_min = 0;       ///< cm, displaced skin to walls; negative where the skin has passed a wall
-  double tip_displacement = 0;    ///< cm, axial, innermost probe
-  double holder_displacement = 0; ///< cm, axial, outermost probe
-  MotionReport motion;            ///< of couplings that move the domain
-  std::vector<double> general;    ///< by GeneralObservables::columns, cgs
+  double speed_max = 0;        ///< cm/s
+  double wall_shear_max = 0;   ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0;  ///< dyn/cm^2, area mean
+  double clearance_min = 0;    ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  double tip_displacement = 0; ///< cm, axial, innermost probe
+  HolderObservation holder;
+  MotionReport motion;         ///< of couplings that move the domain
+  std::vector<double> general; ///< by GeneralObservables::columns, cgs
 };
 
 /// Precomputed geometry of the observables.

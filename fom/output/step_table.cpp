@@ -9,10 +9,12 @@ namespace {
 
 constexpr double mW_per_erg_per_s = 1e-4;
 constexpr double uJ_per_erg = 0.1;
+constexpr double newton_per_dyn = 1e-5;
 constexpr double mW_per_uJ_per_s = 1e-3;
 
-/// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves.
-enum class In { all, pump, general, moving };
+/// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves,
+/// those driven by a voltage.
+enum class In { all, pump, general, moving, voltage };
 
 struct Column {
   const char* name;
@@ -52,7 +54,16 @@ constexpr Column columns[] = {
     {"tip_displacement_mm", [](const Observation& o) { return units::length_to_mm(o.tip_displacement); },
      In::pump},
     {"holder_displacement_mm",
-     [](const Observation& o) { return units::length_to_mm(o.holder_displacement); }, In::pump},
+     [](const Observation& o) { return units::length_to_mm(o.holder.displacement); }, In::pump},
+    {"holder_velocity_cm_per_s", [](const Observation& o) { return o.holder.velocity; }, In::voltage},
+    {"holder_force_N", [](const Observation& o) { return newton_per_dyn * o.holder.force; }, In::voltage},
+    {"voltage_V", [](const Observation& o) { return o.holder.voltage; }, In::voltage},
+    {"actuator_force_N", [](const Observation& o) { return newton_per_dyn * o.holder.actuator_force; },
+     In::voltage},
+    {"actuator_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.holder.actuator_power; },
+     In::voltage},
+    {"electrical_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.holder.electrical_power; },
+     In::voltage},
     {"contact_power_mW", [](const Observation& o) { return mW_per_erg_per_s * o.energy.contact; }, In::moving,
      true},
     {"step_parts", [](const Observation& o) { return static_cast<double>(o.motion.parts); }, In::moving},
@@ -73,6 +84,8 @@ bool has(const RowLayout& layout, const Column& column) {
       return !layout.pump;
     case In::moving:
       return layout.moving;
+    case In::voltage:
+      return layout.voltage;
     case In::all:
       break;
   }

@@ -12,6 +12,7 @@ struct RowLayout {
   bool per_depth = false; ///< plane: powers and energies per cm of depth
   bool moving = false;    ///< the fluid's domain moves
   std::vector<GeneralColumn> general;
+  bool voltage = false; ///< the holder is driven by a voltage
 };
 
 /// Columns of time_series.csv, without "step".

@@ -311,7 +311,9 @@ std::vector<SceneKey> keys_of(const Scene& scene) {
   std::vector<SceneKey> keys;
   for (const SceneKey& key : scene_table()) {
     const bool of_no_fluid = in_vacuo && is_of_fluid(key.path);
-    if (key.applies_to(scene) && !of_no_fluid) {
+    const bool left_out = scene.operating_point.drive == Drive::voltage &&
+                          key.path == "operating_point.stroke_mm" && !scene.places.contains(key.path);
+    if (key.applies_to(scene) && !of_no_fluid && !left_out) {
       keys.push_back(key);
     }
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fom/actuator/actuator.hpp"
 #include "fom/problem/conditions.hpp"
 #include "fom/problem/materials.hpp"
 #include "fom/problem/stabilisation_weights.hpp"
@@ -45,6 +46,8 @@ struct OperatingPoint {
   double stroke = 0;       ///< cm, amplitude Phi of the holder
   double head = 0;         ///< dyn/cm^2, outlet pressure minus inlet pressure
   double stroke_scale = 1; ///< the holder moves by stroke_scale * stroke
+  Drive drive = Drive::stroke;
+  double voltage = 0; ///< V, amplitude at the actuator
 };
 
 struct MeshSizes {
@@ -128,6 +131,7 @@ struct Scene {
   SolidProperties membrane;
   double clamp_radius = 0; ///< cm; motion of the membrane is imposed for r >= clamp_radius
   OperatingPoint operating_point;
+  ActuatorSettings actuator; ///< of Drive::voltage
   MeshSizes mesh;
   TimeSettings time;
   ContactSettings contact;

@@ -69,6 +69,37 @@ void check_damping(const Scene& scene, const std::string& where) {
   }
 }
 
+/// A voltage drives an actuator, and thin gaps know it.
+void check_drive(const Scene& scene, const std::string& where) {
+  const ActuatorSettings& actuator = scene.actuator;
+  if ((actuator.stop > 0) != (actuator.stop_stiffness > 0)) {
+    throw InputError("end stops are stated by half",
+                     "stop_mm = " + shortest_number(to_surface_unit(actuator.stop, units::cm_per_mm)) +
+                         ", a stiffness of " + shortest_number(actuator.stop_stiffness) + " dyn/cm",
+                     "both positive, or both 0", where + ", section [actuator]");
+  }
+  if (scene.operating_point.drive != Drive::voltage) return;
+  if (scene.space != Space::thin_gap) {
+    throw InputError("this version drives finite elements by a stroke alone", "drive = \"voltage\"",
+                     "drive = \"stroke\", or space = \"thin-gap\"",
+                     place_of_key(scene, "operating_point.drive", where));
+  }
+  if (scene.operating_point.voltage == 0 && !scene.places.contains("operating_point.voltage_V")) {
+    throw InputError("a voltage drives the holder, and none is stated", "no \"operating_point.voltage_V\"",
+                     "\"operating_point.voltage_V\", the amplitude in V",
+                     place_of_key(scene, "operating_point.drive", where));
+  }
+  if (actuator.force_per_volt == 0) {
+    throw InputError("a voltage drives the holder, and makes no force", "force_N_per_V = 0",
+                     "\"actuator.force_N_per_V\" > 0", place_of_key(scene, "actuator.force_N_per_V", where));
+  }
+  if (actuator.stiffness == 0) {
+    throw InputError("nothing brings the holder back to its place", "suspension_N_per_mm = 0",
+                     "\"actuator.suspension_N_per_mm\" > 0",
+                     place_of_key(scene, "actuator.suspension_N_per_mm", where));
+  }
+}
+
 void check_contact(const Scene& scene, const std::string& where) {
   const ContactSettings& contact = scene.contact;
   if (scene.space == Space::thin_gap &&
@@ -155,6 +186,7 @@ void check_consistency(const Scene& scene, const std::string& where) {
   check_levels(scene, where);
   check_contact(scene, where);
   check_damping(scene, where);
+  check_drive(scene, where);
   check_time(scene, where);
 }
 

@@ -149,13 +149,49 @@ std::vector<SceneKey> pump_keys() {
        shapes_state, RealKey{FIELD(clamp_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
       {"operating_point.frequency_Hz", "Hz", "frequency f of the actuator", shapes_state,
        RealKey{FIELD(operating_point.frequency), 1, above_to(0, 1e5), {}}},
-      {"operating_point.stroke_mm", "mm", "amplitude of the imposed motion, stroke * sin(2 pi f t)",
-       shapes_state, RealKey{FIELD(operating_point.stroke), cm_per_mm, from_to(0, 100), {}}},
+      {"operating_point.drive", "",
+       "what the holder is driven with; `stroke`: its motion is imposed; `voltage`: the force of the "
+       "[actuator], the motion is an answer (thin gap only)",
+       shapes_state,
+       choice<FIELD(operating_point.drive)>({name("stroke", Drive::stroke), name("voltage", Drive::voltage)},
+                                            {}, "stroke")},
+      {"operating_point.stroke_mm", "mm",
+       "amplitude of the imposed motion, stroke * sin(2 pi f t); not needed with a voltage", shapes_state,
+       RealKey{FIELD(operating_point.stroke), cm_per_mm, from_to(0, 100), {}}},
+      {"operating_point.voltage_V", "V", "amplitude of the voltage, voltage * sin(2 pi f t)", shapes_state,
+       RealKey{FIELD(operating_point.voltage), 1, from_to(0, 1e5), 0.0}},
       {"operating_point.stroke_scale", "",
        "factor on the stroke: what the holder does of what the actuator is said to do", shapes_state,
        RealKey{FIELD(operating_point.stroke_scale), 1, from_to(0, 10), 1.0}},
       {"operating_point.head_mmHg", "mmHg", "outlet pressure minus inlet pressure", shapes_state,
        RealKey{FIELD(operating_point.head), mmHg, from_to(-1e4, 1e4), {}}},
+  };
+}
+
+std::vector<SceneKey> actuator_keys() {
+  constexpr double dyn_per_N = 1e5, dyn_per_cm_of_N_per_mm = 1e6, dyn_s_per_cm_of_N_s_per_m = 1e3;
+  const auto part = [](const char* path, const char* unit, const char* help,
+                       std::function<double&(Scene&)> field, double cgs_per_unit, double high) {
+    return SceneKey{path, unit, help, shapes_state,
+                    RealKey{std::move(field), cgs_per_unit, from_to(0, high), 0.0}};
+  };
+  return {
+      part("actuator.force_N_per_V", "N_per_V", "force on a holder at rest per volt",
+           FIELD(actuator.force_per_volt), dyn_per_N, 1e6),
+      part("actuator.moving_mass_g", "g", "mass that moves with the holder, the membrane left out",
+           FIELD(actuator.moving_mass), 1, 1e6),
+      part("actuator.suspension_N_per_mm", "N_per_mm", "stiffness of the suspension",
+           FIELD(actuator.stiffness), dyn_per_cm_of_N_per_mm, 1e9),
+      part("actuator.damping_N_s_per_m", "N_s_per_m",
+           "damping of the holder; without that of the coil where its resistance is stated",
+           FIELD(actuator.damping), dyn_s_per_cm_of_N_s_per_m, 1e9),
+      part("actuator.coil_resistance_ohm", "ohm",
+           "resistance of the coil; its back-EMF damps by force_per_volt^2 * resistance; 0: not stated",
+           FIELD(actuator.coil_resistance), 1, 1e6),
+      part("actuator.stop_mm", "mm", "displacement at which the holder meets an end stop; 0: no stops",
+           FIELD(actuator.stop), cm_per_mm, 1e3),
+      part("actuator.stop_N_per_mm", "N_per_mm", "stiffness of the end stops", FIELD(actuator.stop_stiffness),
+           dyn_per_cm_of_N_per_mm, 1e9),
   };
 }
 
@@ -433,10 +469,10 @@ std::span<const SceneKey> scene_table() {
     std::vector<SceneKey> all;
     for (const auto& part :
          {model_keys(), scoped(Scope::pump, geometry_keys()), scoped(Scope::general, domain_keys()),
-          fluid_keys(), scoped(Scope::pump, pump_keys()), scoped(Scope::pump, mesh_keys()), numerics_keys(),
-          scoped(Scope::pump, period_keys()), scoped(Scope::general, duration_keys()),
-          scoped(Scope::general, statistics_keys()), stabilisation_keys(),
-          scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
+          fluid_keys(), scoped(Scope::pump, pump_keys()), scoped(Scope::pump, actuator_keys()),
+          scoped(Scope::pump, mesh_keys()), numerics_keys(), scoped(Scope::pump, period_keys()),
+          scoped(Scope::general, duration_keys()), scoped(Scope::general, statistics_keys()),
+          stabilisation_keys(), scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     for (SceneKey& key : all) {
@@ -467,13 +503,16 @@ std::span<const SceneKey> scene_table() {
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 13> help = {{
+  static const std::array<std::pair<const char*, const char*>, 14> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
       {"geometry", "Of a pump: either a profile, or meshes made elsewhere."},
       {"domain", "The fluid's domain of any other problem: a polygon or a circle, with holes ([hole.NAME])."},
       {"fluid", "Newtonian, incompressible."},
       {"membrane", "Material of the membrane and the region that the actuator holds."},
       {"operating_point", "What the pump is driven with."},
+      {"actuator",
+       "The motor of `drive = \"voltage\"`: a force in proportion to the voltage on a mass with a suspension "
+       "(docs/drive.md)."},
       {"mesh", "Element sizes for meshes made from a profile."},
       {"time", "The time step is the period over `steps_per_period`, or `step_s`."},
       {"contact", "Solids that come close to walls, and the slip that lets them (finite elements)."},

@@ -20,6 +20,11 @@ void BandMatrix::clear_row(int row) {
     (*this)(row, column) = 0;
 }
 
+void BandMatrix::add_row_to(int row, Eigen::VectorXd& sum) const {
+  for (int column = std::max(0, row - reach_); column <= std::min(size_ - 1, row + reach_); ++column)
+    sum[column] += entries_[static_cast<std::size_t>(column) * height_ + 2 * reach_ + row - column];
+}
+
 bool BandMatrix::factor() {
   return LAPACKE_dgbtrf_work(LAPACK_COL_MAJOR, size_, size_, reach_, reach_, entries_.data(), height_,
                              pivots_.data()) == 0;

@@ -18,6 +18,8 @@ public:
     return entries_[static_cast<std::size_t>(column) * height_ + 2 * reach_ + row - column];
   }
   void clear_row(int row);
+  /// Adds a row to a dense vector of all columns.
+  void add_row_to(int row, Eigen::VectorXd& sum) const;
   /// LU with partial pivoting, in place. False if a pivot is zero.
   [[nodiscard]] bool factor();
   /// After factor(): replaces `right_side` by the solution.

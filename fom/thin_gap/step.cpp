@@ -61,6 +61,7 @@ ThinGapStep step_to(const ThinGapLayout& layout, const Scene& scene, const State
   step.alpha = alpha;
   step.outlet_pressure = outlet_pressure(scene, end);
   step.holder_displacement = holder_displacement(scene, end);
+  step.voltage = drive_voltage(scene, end);
   step.d_history = -alpha[1] * state.d[0] - alpha[2] * state.d[1];
   step.x_history = alpha[1] * state.x[0] + alpha[2] * state.x[1];
   const auto now = face_velocities(layout, step.law, state.x[0], state.d[0]);

@@ -20,12 +20,18 @@ struct ThinGapStep {
   double dt = 0;                   ///< s
   std::array<double, 3> alpha{};   ///< (alpha_0 y + alpha_1 y_old + alpha_2 y_older) / dt = dy/dt
   double outlet_pressure = 0;      ///< dyn/cm^2; the inlet is at zero
-  double holder_displacement = 0;  ///< cm, at the end of the step
+  double holder_displacement = 0;  ///< cm, at the end of the step, where it is imposed
+  double voltage = 0;              ///< V, at the end of the step, where the holder is driven by it
   Eigen::VectorXd d_history;       ///< d = (dt v + d_history) / alpha_0 for the plate's velocities v
   Eigen::VectorXd x_history;       ///< dx/dt = (alpha_0 x + x_history) / dt
   Eigen::VectorXd upper_u_history; ///< the same for the velocities (cm/s) at the faces of the upper gap
   Eigen::VectorXd lower_u_history; ///< and of the lower gap
 };
+
+/// Whether the holder's motion is an unknown.
+inline bool holder_is_free(const ThinGapStep& step) {
+  return step.scene->operating_point.drive == Drive::voltage;
+}
 
 /// The closures of a scene.
 GapFlowLaw gap_flow_law(const Scene& scene);

@@ -271,24 +271,44 @@ void assemble_plate(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::Ve
   }
 }
 
-/// Replaces the plate's equations in the holder by its motion. Returns the force of the actuator.
-double impose_holder(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
-                     BandMatrix* matrix) {
+/// What the actuator makes of the holder at velocity v: mass, resistance and voltage.
+void add_actuator(const ThinGapStep& step, double v, HolderEquation& holder) {
+  const ActuatorSettings& actuator = step.scene->actuator;
+  const int last = step.at.nodes - 1;
+  const double w = (step.dt * v + step.d_history[step.at.deflection(last)]) / step.alpha[0];
+  const double acceleration = time_derivative(step, v, step.x_history[step.at.deflection_rate(last)]);
+  const HolderResistance resistance = holder_resistance(actuator, w, v);
+  holder.residual = holder.force + actuator.moving_mass * acceleration + resistance.force -
+                    voltage_force(actuator, step.voltage);
+  holder.by_velocity = actuator.moving_mass * step.alpha[0] / step.dt + resistance.by_velocity +
+                       resistance.by_displacement * step.dt / step.alpha[0];
+}
+
+/// Replaces the plate's equations in the holder by its motion, and sums up what they were.
+void join_holder(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
+                 BandMatrix* matrix, HolderEquation& holder) {
   const auto& at = step.at;
-  double force = 0;
+  const bool free = holder_is_free(step);
+  const double v = holder_velocity(step, x);
+  holder.force = 0;
+  if (matrix && free) holder.row.setZero(at.size());
   for (int node = step.layout->clamp; node < at.nodes; ++node) {
-    force += residual[at.deflection_rate(node)];
+    holder.force += residual[at.deflection_rate(node)];
+    if (matrix && free) matrix->add_row_to(at.deflection_rate(node), holder.row);
     for (int k = 0; k < 3; ++k) {
       const int row = at.deflection_rate(node) + k;
       const double target = k == 0 ? step.holder_displacement : 0.0;
-      residual[row] = x[row] - (step.alpha[0] * target - step.d_history[at.deflection(node) + k]) / step.dt;
+      residual[row] =
+          k == 0 && free
+              ? x[row] - v
+              : x[row] - (step.alpha[0] * target - step.d_history[at.deflection(node) + k]) / step.dt;
       if (matrix) {
         matrix->clear_row(row);
         (*matrix)(row, row) = 1;
       }
     }
   }
-  return force;
+  if (free) add_actuator(step, v, holder);
 }
 
 template <bool derive>
@@ -305,13 +325,17 @@ void assemble_all(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::Vect
 
 } // namespace
 
+double holder_velocity(const ThinGapStep& step, const Eigen::VectorXd& x) {
+  return x[step.at.deflection_rate(step.at.nodes - 1)];
+}
+
 void assemble(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::VectorXd& residual,
-              BandMatrix* matrix, double& holder_force) {
+              BandMatrix* matrix, HolderEquation& holder) {
   if (matrix)
     assemble_all<true>(step, x, residual, matrix);
   else
     assemble_all<false>(step, x, residual, nullptr);
-  holder_force = impose_holder(step, x, residual, matrix);
+  join_holder(step, x, residual, matrix, holder);
 }
 
 } // namespace undula::fom

@@ -61,18 +61,26 @@ private:
   std::array<double, ThinGapUnknowns::per_node> floors_{};
 };
 
+/// Right side of the equations for a unit of the holder's velocity.
+Eigen::VectorXd unit_holder_motion(const ThinGapStep& step) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(step.at.size());
+  for (int node = step.layout->clamp; node < step.at.nodes; ++node) motion[step.at.deflection_rate(node)] = 1;
+  return motion;
+}
+
 /// Newton's iteration from x. Empty, with the reason, where it does not converge. A cycle between the two
 /// sides of a closing gap is broken by shorter updates.
 std::optional<Eigen::VectorXd> newton(const ThinGapStep& step, Eigen::VectorXd x, BandMatrix& matrix,
-                                      PhaseTimer& timer, double& holder_force, std::string& reason) {
+                                      PhaseTimer& timer, HolderEquation& holder, std::string& reason) {
   const RelativeChange relative_change(step);
-  Eigen::VectorXd residual, update;
-  bool fresh = true; // the matrix is that of x
+  const bool free = holder_is_free(step);
+  Eigen::VectorXd residual, update, by_holder; // by_holder: how all unknowns follow the holder's velocity
+  bool fresh = true;                           // the matrix is that of x
   double previous_change = 0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     {
       const auto scope = timer.measure("assemble");
-      assemble(step, x, residual, fresh ? &matrix : nullptr, holder_force);
+      assemble(step, x, residual, fresh ? &matrix : nullptr, holder);
     }
     if (fresh) {
       const auto scope = timer.measure("factor");
@@ -80,11 +88,19 @@ std::optional<Eigen::VectorXd> newton(const ThinGapStep& step, Eigen::VectorXd x
         reason = "the equations are singular";
         return std::nullopt;
       }
+      if (free) {
+        by_holder = unit_holder_motion(step);
+        matrix.solve(by_holder);
+      }
     }
     {
       const auto scope = timer.measure("solve");
       update = residual;
       matrix.solve(update);
+      // The holder's row reaches over more unknowns than the band: it is eliminated.
+      if (free)
+        update += (holder.residual - holder.row.dot(update)) /
+                  (holder.by_velocity + holder.row.dot(by_holder)) * by_holder;
     }
     if (!update.allFinite()) {
       reason = "the equations have no finite solution";
@@ -94,7 +110,7 @@ std::optional<Eigen::VectorXd> newton(const ThinGapStep& step, Eigen::VectorXd x
     const double change = relative_change(x, update);
     if (change < step.scene->thin_gap.newton_tolerance) {
       const auto scope = timer.measure("assemble");
-      assemble(step, x, residual, nullptr, holder_force);
+      assemble(step, x, residual, nullptr, holder);
       return x;
     }
     // An old matrix serves as long as it brings x closer at this rate.
@@ -109,16 +125,16 @@ std::optional<Eigen::VectorXd> newton(const ThinGapStep& step, Eigen::VectorXd x
 struct StepResult {
   ThinGapStep step; ///< the last one solved: the whole, or the last part of it
   Eigen::VectorXd x, d;
-  double holder_force = 0;
+  HolderEquation holder;
 };
 
 /// One time step; where Newton fails, 2, 4, ... steps of backward Euler in its place.
 StepResult solve_step(const ThinGapLayout& layout, const Scene& scene, const State& state, BandMatrix& matrix,
                       PhaseTimer& timer) {
-  StepResult result{next_step(layout, scene, state), {}, {}, 0};
+  StepResult result{next_step(layout, scene, state), {}, {}, {}};
   std::string reason;
   const Eigen::VectorXd ahead = state.step == 0 ? state.x[0] : Eigen::VectorXd(2 * state.x[0] - state.x[1]);
-  if (auto x = newton(result.step, ahead, matrix, timer, result.holder_force, reason)) {
+  if (auto x = newton(result.step, ahead, matrix, timer, result.holder, reason)) {
     result.d = displacements(result.step, *x);
     result.x = std::move(*x);
     return result;
@@ -129,7 +145,7 @@ StepResult solve_step(const ThinGapLayout& layout, const Scene& scene, const Sta
     bool solved = true;
     for (int k = 1; k <= parts && solved; ++k) {
       result.step = euler_step(layout, scene, part, dt / parts, begin + k * dt / parts);
-      auto x = newton(result.step, part.x[0], matrix, timer, result.holder_force, reason);
+      auto x = newton(result.step, part.x[0], matrix, timer, result.holder, reason);
       solved = x.has_value();
       if (solved) {
         part.d[0] = displacements(result.step, *x);
@@ -183,7 +199,8 @@ Observation observe(const ThinGapLayout& layout, const Scene& scene, const ThinG
   }
   seen.wall_shear_mean /= area;
   seen.tip_displacement = d[at.deflection(0)];
-  seen.holder_displacement = d[at.deflection(at.nodes - 1)];
+  seen.holder = observe_holder(scene, step.voltage, d[at.deflection(at.nodes - 1)], holder_velocity(step, x),
+                               holder_force);
   return seen;
 }
 
@@ -225,7 +242,7 @@ Observation ThinGapStepper::advance(State& state) {
   ++state.step;
   state.time = state.step * time_step(scene_);
   const auto scope = timer_.measure("observe");
-  return observe(model_.layout, scene_, result.step, state, result.holder_force);
+  return observe(model_.layout, scene_, result.step, state, result.holder.force);
 }
 
 MembraneProbes membrane_probes(const ThinGapModel& model, int count) {

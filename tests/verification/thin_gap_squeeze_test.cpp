@@ -71,7 +71,7 @@ FilmRecord film(const Film& film) {
              std::sin(2 * pi * scene.operating_point.frequency * now.time - 4 * pi / steps));
     record.time.push_back(now.time);
     record.velocity.push_back(velocity);
-    record.gap.push_back(gap + seen.holder_displacement);
+    record.gap.push_back(gap + seen.holder.displacement);
     record.force.push_back(seen.energy.holder / velocity);
   });
   return record;

@@ -16,7 +16,7 @@ namespace undula::training {
 namespace {
 
 constexpr std::array stated_by_data = {"operating_point.frequency_Hz", "operating_point.stroke_mm",
-                                       "operating_point.head_mmHg"};
+                                       "operating_point.voltage_V", "operating_point.head_mmHg"};
 
 [[noreturn]] void refuse(const FreeKey& key, const std::string& what, const std::string& seen,
                          const std::string& allowed) {
@@ -84,6 +84,12 @@ Eigen::VectorXd values_of(const Scene& scene, std::span<const FreeKey> keys) {
   return values;
 }
 
+std::string setting_text(const TargetCurve& target) {
+  return plain_number(target.frequency_Hz) + " Hz, " +
+         (target.voltage_V > 0 ? plain_number(target.voltage_V) + " V"
+                               : plain_number(target.stroke_mm) + " mm");
+}
+
 FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
                              std::span<const TargetCurve> targets, MPI_Comm comm,
                              std::function<void(const std::string&)> on_failure) {
@@ -96,8 +102,10 @@ FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
       const auto level = prepare_level(changed, comm, timer);
       std::vector<double> all;
       for (const TargetCurve& target : targets) {
-        const Scene driven = with_value(with_value(changed, stated_by_data[0], target.frequency_Hz),
-                                        stated_by_data[1], target.stroke_mm);
+        const bool by_voltage = scene.operating_point.drive == Drive::voltage;
+        const Scene driven =
+            with_value(with_value(changed, stated_by_data[0], target.frequency_Hz),
+                       stated_by_data[by_voltage ? 2 : 1], by_voltage ? target.voltage_V : target.stroke_mm);
         const SceneFlows flows = scene_flows(*level, driven, target.head_mmHg, comm);
         all.insert(all.end(), flows.flow_l_per_min.begin(), flows.flow_l_per_min.end());
         // The numbers decide, as they are the same on every rank.

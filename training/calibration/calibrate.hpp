@@ -26,10 +26,14 @@ struct FreeKey {
 /// A measured curve at the heads where it is compared.
 struct TargetCurve {
   std::string name;
-  double frequency_Hz = 0, stroke_mm = 0;
+  double frequency_Hz = 0, stroke_mm = 0;        ///< the stroke of scenes that a stroke drives
   std::vector<double> head_mmHg, flow_l_per_min; ///< same length
   double scatter_l_per_min = 0;                  ///< standard deviation of a measured sample
+  double voltage_V = 0;                          ///< of scenes that a voltage drives
 };
+
+/// "120 Hz, 0.53 mm" or "120 Hz, 40 V".
+std::string setting_text(const TargetCurve& target);
 
 /// Flows (l/min) of all curves one after the other, at values of the free keys in their units; nothing where
 /// one of them cannot be computed.

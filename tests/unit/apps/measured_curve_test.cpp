@@ -13,6 +13,7 @@
 #include "apps/output/text_table.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "rom/base/units.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
 namespace undula::apps {
@@ -103,15 +104,36 @@ TEST(MeasuredCurve, WhatSpreadsheetsWriteIsRead) {
 
 TEST(MeasuredCurve, AnotherOperatingPointIsTold) {
   const MeasuredCurve curve = read_measured_curve(shipped);
-  EXPECT_EQ(other_operating_point(curve, "a.csv", "the model", 120, 0.53), "");
+  const auto told = [](const MeasuredCurve& of, double frequency_Hz, double stroke_mm) {
+    OperatingPoint point;
+    point.frequency = frequency_Hz;
+    point.stroke = units::length_from_mm(stroke_mm);
+    return other_operating_point(of, "a.csv", "the model", point);
+  };
+  EXPECT_EQ(told(curve, 120, 0.53), "");
   EXPECT_EQ(
-      other_operating_point(curve, "a.csv", "the model", 100, 0.53),
-      "a.csv was measured at another operating point: 120 Hz, stroke 0.53 mm; the model has 100 Hz, 0.53 mm");
-  EXPECT_NE(other_operating_point(curve, "a.csv", "the model", 120, 0.63), "");
+      told(curve, 100, 0.53),
+      "a.csv was measured at another operating point: 120 Hz, stroke 0.53 mm; the model has 100 Hz, stroke "
+      "0.53 mm");
+  EXPECT_NE(told(curve, 120, 0.63), "");
   MeasuredCurve bare = curve;
   bare.frequency_Hz.reset();
   bare.stroke_mm.reset();
-  EXPECT_EQ(other_operating_point(bare, "a.csv", "the model", 100, 0.1), "");
+  EXPECT_EQ(told(bare, 100, 0.1), "");
+}
+
+// With a voltage the nominal stroke does not count.
+TEST(MeasuredCurve, AnotherVoltageIsTold) {
+  const MeasuredCurve curve = read_measured_curve(shipped);
+  EXPECT_EQ(curve.voltage_V, 40);
+  OperatingPoint point;
+  point.frequency = 120;
+  point.drive = Drive::voltage;
+  point.voltage = 40;
+  EXPECT_EQ(other_operating_point(curve, "a.csv", "the scene", point), "");
+  point.voltage = 45;
+  EXPECT_EQ(other_operating_point(curve, "a.csv", "the scene", point),
+            "a.csv was measured at another operating point: 120 Hz, 40 V; the scene has 120 Hz, 45 V");
 }
 
 TEST(MeasuredCurve, ExtractionGivesTheFitAndTheNearestSample) {

@@ -95,7 +95,7 @@ TEST(MembraneProbes, ReadTheAxialDisplacementOfTheMidPlane) {
   }
   const auto seen = box.see(box.nothing(), bent);
   EXPECT_NEAR(seen.tip_displacement, 0.09 + 0.03 * middle, 1e-6);
-  EXPECT_NEAR(seen.holder_displacement, 0.64 + 0.08 * middle, 1e-6);
+  EXPECT_NEAR(seen.holder.displacement, 0.64 + 0.08 * middle, 1e-6);
 }
 
 TEST(Flow, IsPositiveOutOfTheOutletAndIntoTheInlet) {

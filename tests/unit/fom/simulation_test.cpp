@@ -36,7 +36,7 @@ TEST(Simulation, MovesTheHolderAsTheSceneSaysAndKeepsTheVolume) {
     EXPECT_EQ(seen.step, 84 + steps);
     EXPECT_EQ(now.step, seen.step);
     const double phase = 2 * std::numbers::pi * seen.step / 96.0;
-    EXPECT_NEAR(seen.holder_displacement, 0.053 * std::sin(phase), 1e-12);
+    EXPECT_NEAR(seen.holder.displacement, 0.053 * std::sin(phase), 1e-12);
     EXPECT_NEAR(seen.tip_displacement, 0.053 * std::sin(phase), 1e-12);
     EXPECT_GT(std::abs(seen.outflow), 1e-3);
     EXPECT_NEAR(seen.inflow, seen.outflow, 1e-7 * std::abs(seen.outflow));
@@ -51,7 +51,7 @@ TEST(Simulation, MovesTheHolderAsTheSceneSaysAndKeepsTheVolume) {
   State other = level->initial_state();
   other.step = 94;
   march(*level, scene, other, timer, [&](const State& now, const Observation& seen) {
-    EXPECT_NEAR(seen.holder_displacement, holder_displacement(scene, now.time), 1e-12);
+    EXPECT_NEAR(seen.holder.displacement, holder_displacement(scene, now.time), 1e-12);
     EXPECT_EQ(seen.hydraulic_power, 0);
   });
 }
@@ -64,7 +64,7 @@ TEST(Simulation, LetsTheMembraneBend) {
   state.step = 84;
   Observation last;
   march(*level, scene, state, timer, [&](const State&, const Observation& seen) { last = seen; });
-  EXPECT_NEAR(last.holder_displacement, 0, 1e-12); // a whole period
+  EXPECT_NEAR(last.holder.displacement, 0, 1e-12); // a whole period
   EXPECT_GT(std::abs(last.tip_displacement), 1e-3);
   EXPECT_GT(last.clearance_min, 0);
 }

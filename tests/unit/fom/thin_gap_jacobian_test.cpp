@@ -17,6 +17,7 @@ struct JacobianCase {
   SolidModel solid;
   GapFriction friction;
   bool contact;
+  Drive drive = Drive::stroke;
 };
 
 class ThinGapJacobian : public testing::TestWithParam<JacobianCase> {};
@@ -52,6 +53,9 @@ TEST_P(ThinGapJacobian, IsTheDerivativeOfTheResidual) {
   scene.fluid = {1.0, 0.035};
   scene.membrane = {1.125, 1.686e7, 0.49, 1e-4};
   scene.operating_point = {120, 0.053, 6e4, 1.0};
+  scene.operating_point.drive = param.drive;
+  scene.operating_point.voltage = 40;
+  scene.actuator = {4e4, 10, 2e7, 1e3, 1.0, 0.01, 5e7};
   scene.time.steps_per_period = 72;
   scene.time.ramp_periods = 0;
   scene.outlet = OpeningCondition::static_pressure;
@@ -102,23 +106,29 @@ TEST_P(ThinGapJacobian, IsTheDerivativeOfTheResidual) {
   }
   BandMatrix matrix(at.size(), ThinGapUnknowns::reach);
   Eigen::VectorXd residual, ahead, behind, without;
-  double force = 0;
-  assemble(step, x, residual, &matrix, force);
-  assemble(step, x, without, nullptr, force);
+  HolderEquation holder, moved_holder;
+  assemble(step, x, residual, &matrix, holder);
+  assemble(step, x, without, nullptr, moved_holder);
   ASSERT_LT((residual - without).norm(), 1e-13 * residual.norm());
+  Eigen::VectorXd holder_row = Eigen::VectorXd::Zero(at.size());
   Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(at.size(), at.size()), numerical = analytic;
   for (int column = 0; column < at.size(); ++column) {
     const double h = 1e-5 * std::max(1.0, std::abs(x[column]));
     Eigen::VectorXd moved = x;
     moved[column] += h;
-    assemble(step, moved, ahead, nullptr, force);
+    assemble(step, moved, ahead, nullptr, moved_holder);
+    holder_row[column] = moved_holder.residual / (2 * h);
     moved[column] = x[column] - h;
-    assemble(step, moved, behind, nullptr, force);
+    assemble(step, moved, behind, nullptr, moved_holder);
+    holder_row[column] -= moved_holder.residual / (2 * h);
     numerical.col(column) = (ahead - behind) / (2 * h);
     for (int row = std::max(0, column - ThinGapUnknowns::reach);
          row <= std::min(at.size() - 1, column + ThinGapUnknowns::reach); ++row)
       analytic(row, column) = matrix(row, column);
   }
+  if (param.drive == Drive::voltage) // the matrix is that for a given velocity of the holder
+    for (int node = layout.clamp; node < at.nodes; ++node)
+      numerical(at.deflection_rate(node), at.deflection_rate(at.nodes - 1)) += 1;
   // Measured against the largest entry of the row: rounding of the residual is of that size.
   double worst = 0;
   for (int row = 0; row < at.size(); ++row) {
@@ -131,6 +141,15 @@ TEST_P(ThinGapJacobian, IsTheDerivativeOfTheResidual) {
                              << " and " << numerical(row, column);
     }
   }
+  if (param.drive == Drive::voltage) {
+    // The equations of the holder's nodes read its velocity from the last of them, its own equation as well.
+    const int last = at.deflection_rate(at.nodes - 1);
+    Eigen::VectorXd row = holder.row;
+    row[last] += holder.by_velocity;
+    EXPECT_LT((row - holder_row).lpNorm<Eigen::Infinity>(), 1e-5 * row.lpNorm<Eigen::Infinity>());
+    EXPECT_GT(row.head(last - ThinGapUnknowns::reach).lpNorm<Eigen::Infinity>(),
+              0); // beyond the reach of the band
+  }
   std::printf("%s: largest difference %.1e of the row's largest entry\n", param.name, worst);
 }
 
@@ -141,6 +160,9 @@ INSTANTIATE_TEST_SUITE_P(States, ThinGapJacobian,
                                                       SolidModel::von_karman, GapFriction::poiseuille, true},
                                          JacobianCase{"Oscillatory", FlowModel::navier_stokes,
                                                       SolidModel::linear, GapFriction::oscillatory, false},
+                                         JacobianCase{"ByVoltage", FlowModel::navier_stokes,
+                                                      SolidModel::von_karman, GapFriction::poiseuille, true,
+                                                      Drive::voltage},
                                          JacobianCase{"Stokes", FlowModel::stokes, SolidModel::linear,
                                                       GapFriction::poiseuille, true}),
                          [](const auto& instance) { return std::string(instance.param.name); });
