@@ -26,6 +26,7 @@
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
@@ -53,12 +54,28 @@ struct HqCommandOptions {
   std::vector<std::string> petsc;
 };
 
-/// The level beside the curve: at the frequency and stroke that its holder makes.
+/// The level beside the curve: at the frequency and stroke that its holder makes. Beside one that a voltage
+/// drives, a scene keeps its own drive.
 LevelSource read_beside(const HqCommandOptions& options, const Scene& scene) {
   const auto& point = scene.operating_point;
+  if (point.drive == Drive::voltage) {
+    if (!is_scene(options.beside)) {
+      throw InputError("a reduced model of this version is driven by a stroke", options.beside,
+                       "--beside with a scene (.toml), where a voltage drives the curve", "--beside");
+    }
+    return read_level_source(options.beside, {}, point.frequency, {});
+  }
   const double stroke =
       units::length_to_mm(point.stroke) * (is_scene(options.beside) ? 1 : point.stroke_scale);
   return read_level_source(options.beside, {}, point.frequency, stroke);
+}
+
+/// Of the same level at another drive: which.
+std::string name_beside(const Level& other, const Level& level, const LevelSource& source,
+                        const Scene& scene) {
+  const bool told_apart =
+      other.name() != level.name() || source.scene.operating_point.drive == scene.operating_point.drive;
+  return other.name() + (told_apart ? "" : ", " + setting_text(source.scene.operating_point));
 }
 
 /// Runs of another operating point are not drawn.
@@ -168,7 +185,7 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
                                 elapsed.count(),
                                 measured ? &*measured : nullptr,
                                 band ? &*band : nullptr,
-                                other ? other_level->name() : "",
+                                other ? name_beside(*other_level, *level, *other, scene) : "",
                                 beside,
                                 recorded};
     std::cout << (options.json ? curve_json(report) : curve_table(report));
