@@ -117,8 +117,8 @@ void print_json(const Scene& scene, const SceneCheck& check) {
                                     {"min_angle_deg", mesh.quality.min_angle},
                                     {"shortest_edge_cm", mesh.quality.shortest_edge},
                                     {"longest_edge_cm", mesh.quality.longest_edge},
-                                    {"low_mm", point_in_mm(mesh.low)},
-                                    {"high_mm", point_in_mm(mesh.high)}};
+                                    {"low_mm", point_in_mm(mesh.box.low)},
+                                    {"high_mm", point_in_mm(mesh.box.high)}};
     if (!mesh.file.empty()) {
       entry["file"] = mesh.file;
       entry["reoriented_cells"] = mesh.reoriented;
@@ -148,7 +148,8 @@ std::string mesh_tables(const Scene& scene, const std::vector<CheckedMesh>& mesh
     rows.push_back({mesh.name, std::to_string(quality.cells), std::to_string(quality.points),
                     decimals(quality.min_angle, 1), decimals(quality.shortest_edge, 4),
                     decimals(quality.longest_edge, 4)});
-    places.push_back({mesh.name, range(mesh.low[0], mesh.high[0]), range(mesh.low[1], mesh.high[1])});
+    places.push_back(
+        {mesh.name, range(mesh.box.low[0], mesh.box.high[0]), range(mesh.box.low[1], mesh.box.high[1])});
     if (imported) {
       places.back().push_back(mesh.file);
       places.back().push_back(std::to_string(mesh.reoriented));

@@ -23,11 +23,7 @@ CheckedMesh checked(const std::string& name, const SimplexMesh<2>& mesh) {
   CheckedMesh result;
   result.name = name;
   result.quality = mesh_quality(mesh);
-  result.low = result.high = mesh.points.empty() ? Point<2>(0, 0) : mesh.points.front();
-  for (const auto& x : mesh.points) {
-    result.low = result.low.cwiseMin(x);
-    result.high = result.high.cwiseMax(x);
-  }
+  result.box = box_around<2>(mesh.points);
   return result;
 }
 

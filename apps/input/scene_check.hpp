@@ -8,6 +8,7 @@
 #include "apps/apps.hpp"
 #include "fom/scene/scene.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
+#include "geometry/mesh/box_grid.hpp"
 #include "geometry/mesh/mesh_quality.hpp"
 
 namespace undula::apps {
@@ -16,7 +17,7 @@ struct CheckedMesh {
   std::string name; ///< "background", or of the solid
   std::string file; ///< of an imported mesh
   MeshQuality quality;
-  Point<2> low, high; ///< cm, box around it
+  Box<2> box;         ///< cm, around it
   int reoriented = 0; ///< cells of the file that were turned round
 };
 

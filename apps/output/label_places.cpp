@@ -28,9 +28,7 @@ std::vector<std::pair<double, double>> label_offsets(const std::vector<LabelledM
   std::vector<std::pair<double, double>> offsets;
   for (const LabelledMark& mark : marks) {
     const double width = static_cast<double>(mark.text.size()) + 0.4;
-    std::pair<double, double> offset;
     const auto is_free = [&](const std::pair<double, double>& place) {
-      offset = place;
       const Box label{mark.x + place.first, mark.y + place.second, width, 1};
       return std::none_of(taken.begin(), taken.end(), [&](const Box& box) { return overlap(label, box); });
     };
@@ -42,7 +40,8 @@ std::vector<std::pair<double, double>> label_offsets(const std::vector<LabelledM
         }
       }
     }
-    static_cast<void>(std::any_of(places.begin(), places.end(), is_free));
+    const auto found = std::find_if(places.begin(), places.end(), is_free);
+    const auto offset = found == places.end() ? places.back() : *found;
     taken.push_back({mark.x + offset.first, mark.y + offset.second, width, 1});
     offsets.push_back(offset);
   }

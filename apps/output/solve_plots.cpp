@@ -37,9 +37,9 @@ struct Window {
   }
 };
 
-Window membrane_window(const std::array<Point<2>, 2>& box) {
-  const double margin = 0.1 * (box[1][0] - box[0][0]);
-  return {box[0].array() - margin, box[1].array() + margin};
+Window membrane_window(const Box<2>& box) {
+  const double margin = 0.1 * (box.high[0] - box.low[0]);
+  return {box.low.array() - margin, box.high.array() + margin};
 }
 
 /// Length of the vectors of a field, point by point.

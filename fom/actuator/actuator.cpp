@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rom/base/units.hpp"
+
 namespace undula::fom {
 namespace {
 
-constexpr double dyn_per_newton = 1e5, cm_per_metre = 100;
-constexpr double erg_per_joule = dyn_per_newton * cm_per_metre;
+constexpr double cm_per_m = 100;
+constexpr double erg_per_J = units::dyn_per_N * cm_per_m;
 
 /// How far the holder is in a stop, with the sign of its displacement, cm.
 double in_stop(const ActuatorSettings& actuator, double displacement) {
@@ -28,20 +30,15 @@ HolderResistance holder_resistance(const ActuatorSettings& actuator, double disp
 }
 
 double coil_damping(const ActuatorSettings& actuator) {
-  const double newton_per_volt = actuator.force_per_volt / dyn_per_newton;
-  return newton_per_volt * newton_per_volt * actuator.coil_resistance * dyn_per_newton / cm_per_metre;
+  const double newton_per_volt = actuator.force_per_volt / units::dyn_per_N;
+  return newton_per_volt * newton_per_volt * actuator.coil_resistance * units::dyn_per_N / cm_per_m;
 }
 
 double electrical_power(const ActuatorSettings& actuator, double voltage, double velocity) {
   if (actuator.coil_resistance <= 0) return 0;
   const double back_emf = // V
-      actuator.force_per_volt / dyn_per_newton * actuator.coil_resistance * velocity / cm_per_metre;
-  return voltage * (voltage - back_emf) / actuator.coil_resistance * erg_per_joule;
-}
-
-double suspension_energy(const ActuatorSettings& actuator, double displacement) {
-  const double inside = in_stop(actuator, displacement);
-  return 0.5 * (actuator.stiffness * displacement * displacement + actuator.stop_stiffness * inside * inside);
+      actuator.force_per_volt / units::dyn_per_N * actuator.coil_resistance * velocity / cm_per_m;
+  return voltage * (voltage - back_emf) / actuator.coil_resistance * erg_per_J;
 }
 
 } // namespace undula::fom

@@ -47,7 +47,4 @@ inline double voltage_force(const ActuatorSettings& actuator, double voltage) {
 /// not stated.
 double electrical_power(const ActuatorSettings& actuator, double voltage, double velocity);
 
-/// Energy of suspension and stops, erg.
-double suspension_energy(const ActuatorSettings& actuator, double displacement);
-
 } // namespace undula::fom

@@ -26,10 +26,9 @@ struct CurvePoint {
   /// Force of the holder on membrane and fluid per stroke, fundamentals: in phase with the displacement and
   /// a quarter of a period ahead of it.
   double reaction_in_phase_N_per_mm = unknown, reaction_quadrature_N_per_mm = unknown;
-  double actuator_power_mW = unknown; ///< of Drive::voltage
-  double efficiency_percent =
-      unknown; ///< hydraulic power of that put in: by the coil, else the actuator, else the holder
+  double actuator_power_mW = unknown;   ///< of Drive::voltage
   double electrical_power_mW = unknown; ///< of Drive::voltage with the resistance of the coil
+  double efficiency_percent = unknown;  ///< hydraulic power of the electrical, else actuator's, else holder's
   double speed_max_cm_per_s = unknown, clearance_min_mm = unknown;
   int periods = 0; ///< computed at this head
   bool periodic = false;

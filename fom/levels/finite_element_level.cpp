@@ -115,7 +115,7 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
   for (const auto& facet : background.boundary)
     view.outlines.push_back({background.points[facet.points[0]], background.points[facet.points[1]]});
   view.membrane_box =
-      box_around(disc.problem.solids.empty() ? background.points : disc.problem.solids[0].mesh.points);
+      box_around<2>(disc.problem.solids.empty() ? background.points : disc.problem.solids[0].mesh.points);
   if (coupling_ == Coupling::fixed) {
     view.fluid_fields = [&disc, picture](const State& state) { return fluid_fields(disc, *picture, state); };
   } else {

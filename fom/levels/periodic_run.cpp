@@ -15,18 +15,17 @@ namespace {
 /// Steps are counted from the first of this march. The means of a signal times 2 sin and 2 cos of the drive's
 /// phase are the coefficients of its fundamental.
 void append(TimeSeries& series, const Observation& seen, double frequency) {
-  constexpr double mW_per_erg_per_s = 1e-4, newton_per_dyn = 1e-5;
   series.steps.push_back(static_cast<int>(series.rows()) + 1);
   const double phase = 2 * std::numbers::pi * frequency * seen.time;
   const double sine = 2 * std::sin(phase), cosine = 2 * std::cos(phase);
   const double place = units::length_to_mm(seen.holder.displacement),
-               force = newton_per_dyn * seen.holder.force;
+               force = units::force_to_N(seen.holder.force);
   for (const double value :
        {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
-        seen.hydraulic_power * mW_per_erg_per_s, seen.energy.holder * mW_per_erg_per_s, seen.speed_max,
+        units::power_to_mW(seen.hydraulic_power), units::power_to_mW(seen.energy.holder), seen.speed_max,
         units::length_to_mm(seen.clearance_min), place, place * sine, place * cosine, force * sine,
-        force * cosine, seen.holder.actuator_power * mW_per_erg_per_s,
-        seen.holder.electrical_power * mW_per_erg_per_s})
+        force * cosine, units::power_to_mW(seen.holder.actuator_power),
+        units::power_to_mW(seen.holder.electrical_power)})
     series.values.push_back(value);
 }
 

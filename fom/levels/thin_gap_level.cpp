@@ -37,7 +37,7 @@ LevelView ThinGapLevel::view(const Scene& scene) const {
   view.solids = solid_picture(model_);
   for (const auto& edge : boundary_edges(view.fluid))
     view.outlines.push_back({view.fluid.points[edge[0]], view.fluid.points[edge[1]]});
-  view.membrane_box = box_around(view.solids.points);
+  view.membrane_box = box_around<2>(view.solids.points);
   const ThinGapModel& model = model_;
   view.fluid_fields = [&model](const State& state) { return fluid_fields(model, state); };
   view.solid_fields = [&model](const State& state) { return solid_fields(model, state); };

@@ -17,16 +17,6 @@ const NodalField& field_named(const std::vector<NodalField>& fields, const std::
   throw InputError("there is no such field", name, allowed, "the fields of a level");
 }
 
-std::array<Point<2>, 2> box_around(const std::vector<Point<2>>& points) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  std::array<Point<2>, 2> box = {Point<2>::Constant(infinity), Point<2>::Constant(-infinity)};
-  for (const auto& x : points) {
-    box[0] = box[0].cwiseMin(x);
-    box[1] = box[1].cwiseMax(x);
-  }
-  return box;
-}
-
 std::vector<std::array<int, 2>> boundary_edges(const FieldMesh<2>& mesh) {
   std::map<std::array<int, 2>, int> triangles_at;
   for (const auto& cell : mesh.cells)

@@ -7,6 +7,7 @@
 
 #include "fom/output/field_writer.hpp"
 #include "fom/output/step_table.hpp"
+#include "geometry/mesh/box_grid.hpp"
 
 namespace undula::fom {
 
@@ -23,7 +24,7 @@ struct LevelView {
   FieldMesh<2> fluid;                            ///< at rest
   FieldMesh<2> solids;                           ///< at rest
   std::vector<std::array<Point<2>, 2>> outlines; ///< cm, edges that bound the fluid at rest
-  std::array<Point<2>, 2> membrane_box;          ///< cm, lowest and highest corner of the first solid at rest
+  Box<2> membrane_box;                           ///< cm, around the first solid at rest
   PictureOfState moved_fluid; ///< empty where the fluid's domain does not move: then it is `fluid`
   FieldsOfState fluid_fields; ///< on `moved_fluid` or `fluid`: "velocity" (cm/s), "pressure" (dyn/cm^2), ...
   FieldsOfState solid_fields; ///< on `solids`: "displacement" (cm), "velocity" (cm/s)
@@ -31,9 +32,6 @@ struct LevelView {
 
 /// The field with this name. Throws InputError naming the fields there are.
 const NodalField& field_named(const std::vector<NodalField>& fields, const std::string& name);
-
-/// Lowest and highest corner of the box around points.
-std::array<Point<2>, 2> box_around(const std::vector<Point<2>>& points);
 
 /// Pairs of points that are an edge of one triangle only: the boundary of a picture.
 std::vector<std::array<int, 2>> boundary_edges(const FieldMesh<2>& mesh);

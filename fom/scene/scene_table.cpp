@@ -169,7 +169,7 @@ std::vector<SceneKey> pump_keys() {
 }
 
 std::vector<SceneKey> actuator_keys() {
-  constexpr double dyn_per_N = 1e5, dyn_per_cm_of_N_per_mm = 1e6, dyn_s_per_cm_of_N_s_per_m = 1e3;
+  constexpr double dyn_per_cm_of_N_per_mm = 1e6, dyn_s_per_cm_of_N_s_per_m = 1e3;
   const auto part = [](const char* path, const char* unit, const char* help,
                        std::function<double&(Scene&)> field, double cgs_per_unit, double high) {
     return SceneKey{path, unit, help, shapes_state,
@@ -177,7 +177,7 @@ std::vector<SceneKey> actuator_keys() {
   };
   return {
       part("actuator.force_N_per_V", "N_per_V", "force on a holder at rest per volt",
-           FIELD(actuator.force_per_volt), dyn_per_N, 1e6),
+           FIELD(actuator.force_per_volt), units::dyn_per_N, 1e6),
       part("actuator.moving_mass_g", "g", "mass that moves with the holder, the membrane left out",
            FIELD(actuator.moving_mass), 1, 1e6),
       part("actuator.suspension_N_per_mm", "N_per_mm", "stiffness of the suspension",

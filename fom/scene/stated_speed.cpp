@@ -15,6 +15,7 @@
 #include "fom/scene/fluid_size.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "fom/scene/shape_outline.hpp"
+#include "geometry/mesh/box_grid.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
@@ -25,6 +26,8 @@ using Places = std::vector<Point<2>>;
 constexpr int sampled_instants = 64;
 constexpr int places_per_edge = 8; ///< even: the middle of a parabola is among them
 constexpr int places_across = 16;  ///< of a body, in each direction
+constexpr std::size_t most_places =
+    4000; ///< of a function, evenly chosen: a fine circle has a hundred thousand
 
 /// From 0 to `end`, spread by the golden ratio.
 std::vector<double> sampled_times(double end) {
@@ -56,33 +59,34 @@ public:
   }
   double greatest(const std::array<std::string, 2>& texts, const Places& places,
                   const std::vector<double>& times) const {
-    const auto first = function(texts[0]), second = function(texts[1]);
-    double length = 0;
-    if (!first) return length;
-    for (const double t : times)
-      for (const auto& x : places)
-        length = std::max(length, std::hypot(value(first, x, t), value(second, x, t)));
-    return length;
+    return greatest_length(texts, places, times, value);
   }
   /// The same of its change over a time step, per second.
   double greatest_rate(const std::array<std::string, 2>& texts, const Places& places) const {
-    const auto first = function(texts[0]), second = function(texts[1]);
     const double step = time_step(scene_);
-    double rate = 0;
-    if (!first) return rate;
-    for (const double t : times_) {
+    const auto rate = [step](const std::optional<Expression>& function, const Point<2>& x, double t) {
       const double before = std::max(t - step, 0.0); // no motion is stated before the start
-      const auto change = [&](const auto& component, const Point<2>& x) {
-        return value(component, x, before + step) - value(component, x, before);
-      };
-      for (const auto& x : places)
-        rate = std::max(rate, std::hypot(change(first, x), change(second, x)) / step);
-    }
-    return rate;
+      return (value(function, x, before + step) - value(function, x, before)) / step;
+    };
+    return greatest_length(texts, places, times_, rate);
   }
   const std::vector<double>& times() const { return times_; }
 
 private:
+  template <class Component>
+  double greatest_length(const std::array<std::string, 2>& texts, const Places& places,
+                         const std::vector<double>& times, const Component& component) const {
+    const auto first = function(texts[0]), second = function(texts[1]);
+    double length = 0;
+    if (!first) return length;
+    const std::size_t stride = 1 + places.size() / most_places;
+    for (const double t : times)
+      for (std::size_t i = 0; i < places.size(); i += stride)
+        length =
+            std::max(length, std::hypot(component(first, places[i], t), component(second, places[i], t)));
+    return length;
+  }
+
   const Scene& scene_;
   std::vector<double> times_;
 };
@@ -103,22 +107,10 @@ Places places_along(const TaggedPolygon& domain, const std::string& name) {
   return places;
 }
 
-struct Box {
-  Point<2> low = Point<2>::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  double diameter() const { return (high - low).norm(); }
-};
-
-Box box_of(const Places& points) {
-  Box box;
-  for (const auto& x : points) {
-    box.low = box.low.cwiseMin(x);
-    box.high = box.high.cwiseMax(x);
-  }
-  return box;
-}
+double diameter(const Box<2>& box) { return (box.high - box.low).norm(); }
 
 /// A grid over the box of a body, its corners among the places; only what is held where `held` says.
-Places places_in(const Box& box, const std::optional<Expression>& held) {
+Places places_in(const Box<2>& box, const std::optional<Expression>& held) {
   Places places;
   for (int i = 0; i <= places_across; ++i)
     for (int j = 0; j <= places_across; ++j) {
@@ -162,7 +154,7 @@ double stated_speed(const Scene& scene) {
   const bool axisymmetric = scene.space == Space::axisymmetric;
   const Sampler sampler(scene);
   const TaggedPolygon domain = domain_polygon(problem);
-  const double length = box_of(domain.points).diameter();
+  const double length = diameter(box_around<2>(domain.points));
 
   double speed = 0, pressure = opening_difference(problem, sampler), push = 0;
   for (const auto& [name, boundary] : problem.boundaries)
@@ -170,14 +162,14 @@ double stated_speed(const Scene& scene) {
       speed = std::max(speed, sampler.greatest(boundary.velocity, places_along(domain, name)));
   pressure = std::max(pressure, length * sampler.greatest(problem.body_force, domain.points));
   for (const auto& [name, body] : problem.bodies) {
-    const Box box = box_of(body_corners(body, axisymmetric));
+    const Box<2> box = box_around<2>(body_corners(body, axisymmetric));
     const Places inside = places_in(box, {});
     speed = std::max(speed, sampler.greatest(body.velocity, inside, {0.0}));
     const auto held = sampler.function(body.held);
     if (held)
       speed =
           std::max(speed, units::cm_per_mm * sampler.greatest_rate(body.displacement, places_in(box, held)));
-    push = std::max(push, box.diameter() * sampler.greatest(body.body_force, inside));
+    push = std::max(push, diameter(box) * sampler.greatest(body.body_force, inside));
   }
   const auto driven_by = [&](double difference) {
     return std::min(std::sqrt(2 * difference / scene.fluid.density),

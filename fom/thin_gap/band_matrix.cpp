@@ -22,7 +22,7 @@ void BandMatrix::clear_row(int row) {
 
 void BandMatrix::add_row_to(int row, Eigen::VectorXd& sum) const {
   for (int column = std::max(0, row - reach_); column <= std::min(size_ - 1, row + reach_); ++column)
-    sum[column] += entries_[static_cast<std::size_t>(column) * height_ + 2 * reach_ + row - column];
+    sum[column] += entries_[place(row, column)];
 }
 
 bool BandMatrix::factor() {

@@ -14,9 +14,7 @@ public:
   int size() const { return size_; }
   void set_zero();
   /// Entry (row, column), |row - column| <= reach.
-  double& operator()(int row, int column) {
-    return entries_[static_cast<std::size_t>(column) * height_ + 2 * reach_ + row - column];
-  }
+  double& operator()(int row, int column) { return entries_[place(row, column)]; }
   void clear_row(int row);
   /// Adds a row to a dense vector of all columns.
   void add_row_to(int row, Eigen::VectorXd& sum) const;
@@ -26,6 +24,10 @@ public:
   void solve(Eigen::VectorXd& right_side) const;
 
 private:
+  std::size_t place(int row, int column) const {
+    return static_cast<std::size_t>(column) * height_ + 2 * reach_ + row - column;
+  }
+
   int size_, reach_, height_;
   std::vector<double> entries_;
   std::vector<int> pivots_;

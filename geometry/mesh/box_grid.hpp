@@ -1,9 +1,10 @@
-// Broad phase of the cut: which boxes of a set touch a given box.
+// Boxes along the axes, and the broad phase of the cut: which of a set touch a given one.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "geometry/mesh/simplex_mesh.hpp"
@@ -18,6 +19,18 @@ struct Box {
     return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
   }
 };
+
+/// Box around points; of none, one that is inside out.
+template <int dim>
+Box<dim> box_around(const std::vector<Point<dim>>& points) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Box<dim> box{Point<dim>::Constant(infinity), Point<dim>::Constant(-infinity)};
+  for (const auto& x : points) {
+    box.low = box.low.cwiseMin(x);
+    box.high = box.high.cwiseMax(x);
+  }
+  return box;
+}
 
 /// Box of a cell, exact.
 template <int dim>

@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 
+#include "geometry/mesh/box_grid.hpp"
 #include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/segments.hpp"
 
@@ -61,12 +62,8 @@ std::optional<OutlineFault> outline_fault(const std::vector<Point<2>>& corners, 
 
 double largest_extent(const std::vector<Point<2>>& points) {
   if (points.empty()) return 0;
-  Point<2> low = points.front(), high = points.front();
-  for (const auto& x : points) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  return (high - low).maxCoeff();
+  const auto box = box_around<2>(points);
+  return (box.high - box.low).maxCoeff();
 }
 
 bool surrounds(const std::vector<Point<2>>& corners, const Point<2>& x) {

@@ -1,4 +1,4 @@
-// Conversions between the surface (mm, mmHg, l/min) and the inside (cgs) of Undula.
+// Conversions between the surface (mm, mmHg, l/min, N, mW) and the inside (cgs) of Undula.
 // They are definitions, not physical properties; materials live in the scene.
 #pragma once
 
@@ -7,6 +7,9 @@ namespace undula::units {
 inline constexpr double dyn_per_cm2_per_mmHg = 1333.22387415; // 1 mmHg = 133.322387415 Pa
 inline constexpr double cm3_per_s_per_l_per_min = 1000.0 / 60.0;
 inline constexpr double cm_per_mm = 0.1;
+inline constexpr double dyn_per_N = 1e5;
+inline constexpr double N_per_dyn = 1e-5;
+inline constexpr double mW_per_erg_per_s = 1e-4;
 
 constexpr double pressure_from_mmHg(double p) { return p * dyn_per_cm2_per_mmHg; }
 constexpr double pressure_to_mmHg(double p) { return p / dyn_per_cm2_per_mmHg; }
@@ -14,5 +17,7 @@ constexpr double flow_from_l_per_min(double q) { return q * cm3_per_s_per_l_per_
 constexpr double flow_to_l_per_min(double q) { return q / cm3_per_s_per_l_per_min; }
 constexpr double length_from_mm(double x) { return x * cm_per_mm; }
 constexpr double length_to_mm(double x) { return x / cm_per_mm; }
+constexpr double force_to_N(double f) { return N_per_dyn * f; }
+constexpr double power_to_mW(double p) { return mW_per_erg_per_s * p; }
 
 } // namespace undula::units
