@@ -10,8 +10,8 @@ enum class Drive {
 };
 
 /// The equation of the holder (displacement w, cm) is
-///   moving_mass w'' + (damping + coil's damping) w' + stiffness w + stop(w) = force_per_volt V(t) +
-///   reaction,
+///   moving_mass (w'' - gravity) + (damping + coil's damping) w' + stiffness w + stop(w)
+///     = force_per_volt V(t) + reaction,
 /// `reaction` being what membrane and fluid do to it. It follows from the coil's V = R i + L di/dt + B w' and
 /// its force B i, where the inductance L is left out: i = (V - B w') / R, so that force_per_volt = B / R, and
 /// the back-EMF is a damping of B^2 / R = force_per_volt^2 R.
@@ -21,6 +21,7 @@ struct ActuatorSettings {
   double stiffness = 0;       ///< dyn/cm, of the suspension
   double damping = 0;         ///< dyn s/cm, the coil's left out where its resistance is stated
   double coil_resistance = 0; ///< ohm; 0: not stated
+  double gravity = 0;         ///< cm/s^2, along the axis, on the moving mass
   double stop = 0;            ///< cm, displacement at which the holder meets an end stop; 0: none
   double stop_stiffness = 0;  ///< dyn/cm, of the stops
 };
@@ -41,6 +42,11 @@ double coil_damping(const ActuatorSettings& actuator);
 /// Force on a holder at rest, dyn, at a voltage.
 inline double voltage_force(const ActuatorSettings& actuator, double voltage) {
   return actuator.force_per_volt * voltage;
+}
+
+/// What drives the holder: force of the voltage, and weight, dyn.
+inline double driving_force(const ActuatorSettings& actuator, double voltage) {
+  return voltage_force(actuator, voltage) + actuator.moving_mass * actuator.gravity;
 }
 
 /// Power that the coil takes, erg/s, at a voltage and the holder's velocity (cm/s); 0 where its resistance is

@@ -55,6 +55,7 @@ Eigen::VectorXd MovingStepper<dim>::extrapolated_placement(const State& state, d
   // The velocity half-way through the step, by what it was before.
   if (settings_.motion.extrapolation == Extrapolation::second && state.step > 0)
     placement += 0.5 * dt * ratio * (velocity - state.x[1].tail(solids));
+  if (disc_.problem.holder) return placement;
   for (const auto& node : disc_.imposed)
     placement.template segment<dim>(node.unknown - disc_.fluid_unknowns()) =
         imposed_displacement(disc_, node, t);

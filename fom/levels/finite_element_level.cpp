@@ -127,6 +127,7 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
   }
   view.rows = {!scene.problem.general, scene.space == Space::plane, coupling_ != Coupling::fixed,
                prepared_->observation.general.columns};
+  view.rows.voltage = scene.operating_point.drive == Drive::voltage;
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;
 }

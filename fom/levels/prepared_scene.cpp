@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "fom/levels/scene_problem.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/operating_point.hpp"
 
 namespace undula::fom {
@@ -29,6 +30,7 @@ void set_operating_point(PreparedScene& prepared, const Scene& scene) {
   if (scene.problem.general) return; // its conditions are expressions of its own
   auto& problem = prepared.disc.problem;
   problem.boundary.at(outlet_name).pressure = [scene](double t) { return outlet_pressure(scene, t); };
+  problem.holder = driven_holder(scene);
   for (auto& body : problem.solids)
     body.imposed_displacement = [scene](const Point<2>&, double t) {
       return Point<2>(0.0, holder_displacement(scene, t));

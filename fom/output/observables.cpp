@@ -137,8 +137,9 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   }
   if (const auto inlet = operators.openings.find(inlet_name); inlet != operators.openings.end())
     seen.inflow = -inlet->second.dot(x);
-  seen.general = observe_general(plan.general, disc, operators, stepper, state);
-  seen.energy = stepper.energy(state);
+  const Eigen::VectorXd residual = stepper.residual(state);
+  seen.general = observe_general(plan.general, disc, operators, residual, state);
+  seen.energy = stepper.energy(state, residual);
   for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());
   const auto shear = wall_shear(disc, operators, x);
@@ -148,7 +149,12 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   if (!plan.probes.radius.empty()) {
     const Eigen::VectorXd axial = plan.probes.axial_displacement(state.d[0]);
     seen.tip_displacement = axial[0];
-    seen.holder.displacement = axial[axial.size() - 1];
+    double force = 0;
+    for (const auto& node : disc.imposed) force += residual[node.unknown + dim - 1];
+    const auto& holder = disc.problem.holder;
+    seen.holder =
+        observe_holder(holder ? &holder->actuator : nullptr, holder ? holder->voltage(state.time) : 0,
+                       axial[axial.size() - 1], plan.probes.axial_displacement(x)[axial.size() - 1], force);
   }
   return seen;
 }

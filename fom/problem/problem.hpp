@@ -3,9 +3,11 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fom/actuator/actuator.hpp"
 #include "fom/fom.hpp"
 #include "fom/problem/conditions.hpp"
 #include "fom/problem/materials.hpp"
@@ -49,6 +51,13 @@ struct SolidBody {
   VectorField<dim> initial_velocity;              ///< cm/s at rest positions, t = 0; empty: zero
 };
 
+/// A rigid holder that an actuator drives: the imposed nodes of all solids move with it along the last axis,
+/// and not at all along the others.
+struct DrivenHolder {
+  ActuatorSettings actuator;
+  TimeFunction voltage; ///< V
+};
+
 /// `background` may have no cells (a solid in vacuo) and `solids` may be empty (a rigid channel).
 template <int dim>
 struct FsiProblem {
@@ -57,6 +66,7 @@ struct FsiProblem {
   FluidProperties fluid;
   SimplexMesh<dim> background;
   std::vector<SolidBody<dim>> solids;
+  std::optional<DrivenHolder> holder;                     ///< empty: the solids' imposed displacements hold
   std::map<std::string, BoundaryCondition<dim>> boundary; ///< by name; every boundary name needs one
   VectorField<dim> body_force;                            ///< dyn/cm^3 on the fluid, empty: zero
   StabilisationWeights stabilisation;

@@ -127,14 +127,11 @@ GeneralObservables plan_general_observables(const Discretisation<2>& disc, const
 }
 
 std::vector<double> observe_general(const GeneralObservables& plan, const Discretisation<2>& disc,
-                                    const Operators<2>& operators, const TimeStepper<2>& stepper,
+                                    const Operators<2>& operators, const Eigen::VectorXd& residual,
                                     const State& state) {
   std::vector<double> values;
   const auto& x = state.x[0];
   for (const auto& name : plan.openings) values.push_back(operators.openings.at(name).dot(x));
-  const bool on_boundaries = std::any_of(plan.forces.begin(), plan.forces.end(),
-                                         [](const auto& force) { return !force.boundaries.empty(); });
-  const Eigen::VectorXd residual = on_boundaries ? stepper.residual(state) : Eigen::VectorXd();
   for (const auto& force : plan.forces) {
     Point<2> sum = Point<2>::Zero();
     for (const int solid : force.solids) sum += force_on_solid<2>(disc, operators, x, solid);

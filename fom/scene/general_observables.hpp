@@ -38,9 +38,10 @@ struct GeneralObservables {
 /// rest.
 GeneralObservables plan_general_observables(const Discretisation<2>& disc, const Scene& scene);
 
-/// One value per column, cgs. Points of the fluid that a solid covers give nan. Collective.
+/// One value per column, cgs, of the step that ended in `state` and left this `residual`
+/// (TimeStepper::residual). Points of the fluid that a solid covers give nan. Collective.
 std::vector<double> observe_general(const GeneralObservables& plan, const Discretisation<2>& disc,
-                                    const Operators<2>& operators, const TimeStepper<2>& stepper,
+                                    const Operators<2>& operators, const Eigen::VectorXd& residual,
                                     const State& state);
 
 } // namespace undula::fom

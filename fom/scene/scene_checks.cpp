@@ -69,7 +69,7 @@ void check_damping(const Scene& scene, const std::string& where) {
   }
 }
 
-/// A voltage drives an actuator, and thin gaps know it.
+/// A voltage drives an actuator that is stated.
 void check_drive(const Scene& scene, const std::string& where) {
   const ActuatorSettings& actuator = scene.actuator;
   if ((actuator.stop > 0) != (actuator.stop_stiffness > 0)) {
@@ -79,11 +79,6 @@ void check_drive(const Scene& scene, const std::string& where) {
                      "both positive, or both 0", where + ", section [actuator]");
   }
   if (scene.operating_point.drive != Drive::voltage) return;
-  if (scene.space != Space::thin_gap) {
-    throw InputError("this version drives finite elements by a stroke alone", "drive = \"voltage\"",
-                     "drive = \"stroke\", or space = \"thin-gap\"",
-                     place_of_key(scene, "operating_point.drive", where));
-  }
   if (scene.operating_point.voltage == 0 && !scene.places.contains("operating_point.voltage_V")) {
     throw InputError("a voltage drives the holder, and none is stated", "no \"operating_point.voltage_V\"",
                      "\"operating_point.voltage_V\", the amplitude in V",

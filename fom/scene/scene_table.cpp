@@ -151,7 +151,7 @@ std::vector<SceneKey> pump_keys() {
        RealKey{FIELD(operating_point.frequency), 1, above_to(0, 1e5), {}}},
       {"operating_point.drive", "",
        "what the holder is driven with; `stroke`: its motion is imposed; `voltage`: the force of the "
-       "[actuator], the motion is an answer (thin gap only)",
+       "[actuator], the motion is an answer",
        shapes_state,
        choice<FIELD(operating_point.drive)>({name("stroke", Drive::stroke), name("voltage", Drive::voltage)},
                                             {}, "stroke")},
@@ -169,7 +169,7 @@ std::vector<SceneKey> pump_keys() {
 }
 
 std::vector<SceneKey> actuator_keys() {
-  constexpr double dyn_per_cm_of_N_per_mm = 1e6, dyn_s_per_cm_of_N_s_per_m = 1e3;
+  constexpr double dyn_per_cm_of_N_per_mm = 1e6, dyn_s_per_cm_of_N_s_per_m = 1e3, cm_per_s2_of_m_per_s2 = 100;
   const auto part = [](const char* path, const char* unit, const char* help,
                        std::function<double&(Scene&)> field, double cgs_per_unit, double high) {
     return SceneKey{path, unit, help, shapes_state,
@@ -188,6 +188,11 @@ std::vector<SceneKey> actuator_keys() {
       part("actuator.coil_resistance_ohm", "ohm",
            "resistance of the coil; its back-EMF damps by force_per_volt^2 * resistance; 0: not stated",
            FIELD(actuator.coil_resistance), 1, 1e6),
+      {"actuator.gravity_m_per_s2", "m_per_s2",
+       "gravity along the axis, on the moving mass; 9.81 upwards of the drawing, -9.81 downwards. Buoyancy "
+       "and the "
+       "membrane's weight are left out",
+       shapes_state, RealKey{FIELD(actuator.gravity), cm_per_s2_of_m_per_s2, from_to(-1000, 1000), 0.0}},
       part("actuator.stop_mm", "mm", "displacement at which the holder meets an end stop; 0: no stops",
            FIELD(actuator.stop), cm_per_mm, 1e3),
       part("actuator.stop_N_per_mm", "N_per_mm", "stiffness of the end stops", FIELD(actuator.stop_stiffness),

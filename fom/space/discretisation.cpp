@@ -89,6 +89,7 @@ void constrain_solids(Discretisation<dim>& disc) {
       const int unknown = disc.solid_unknown(static_cast<int>(s), static_cast<int>(i), 0);
       disc.imposed.push_back({static_cast<int>(s), unknown, nodes[i]});
       for (int c = 0; c < dim; ++c) disc.is_constrained[unknown + c] = 1;
+      if (disc.problem.holder) disc.joined.push_back(unknown + dim - 1);
     }
   }
 }
@@ -134,6 +135,15 @@ void number_unknowns(Discretisation<dim>& disc) {
 }
 
 } // namespace
+
+template <int dim>
+void constrain_rows(const Discretisation<dim>& disc, Eigen::VectorXd& values) {
+  double joined = 0;
+  for (const int unknown : disc.joined) joined += values[unknown];
+  for (int unknown = 0; unknown < disc.unknowns(); ++unknown)
+    if (disc.is_constrained[unknown]) values[unknown] = 0;
+  if (!disc.joined.empty()) values[disc.joined.front()] = joined;
+}
 
 template <int dim>
 Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& options) {
@@ -205,6 +215,7 @@ Ownership distribute_unknowns(const Discretisation<dim>& disc, int ranks) {
 }
 
 template struct Discretisation<2>;
+template void constrain_rows(const Discretisation<2>&, Eigen::VectorXd&);
 template Discretisation<2> discretise(FsiProblem<2>, const CutOptions&);
 template Discretisation<2> recut(Discretisation<2>&, const Eigen::VectorXd&, const CutOptions&);
 template std::vector<Point<2>> unknown_positions(const Discretisation<2>&);

@@ -52,6 +52,9 @@ struct Discretisation {
   std::vector<ConstrainedUnknown<dim>> constrained;
   std::vector<ImposedNode<dim>> imposed;
   std::vector<char> is_constrained; ///< by unknown, both kinds
+  /// Unknowns of a driven holder (FsiProblem::holder), constrained to have one value. The row of the first
+  /// holds the sum of their equations and that of the holder. Empty: no holder is driven.
+  std::vector<int> joined;
 
   int fluid_unknowns() const { return solid_offset.front(); }
   int unknowns() const { return solid_offset.back(); }
@@ -73,6 +76,11 @@ Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& option
 template <int dim>
 Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& placement,
                           const CutOptions& options);
+
+/// Makes sums over all test functions sums over those of the system: 0 in the rows of constrained unknowns,
+/// the sum of the joined in the row of the first of them.
+template <int dim>
+void constrain_rows(const Discretisation<dim>& disc, Eigen::VectorXd& values);
 
 /// Position of every unknown's node, for partitioning and plots.
 template <int dim>

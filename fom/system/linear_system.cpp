@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -125,15 +126,34 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   }
   // Every entry once: PETSc sorts and adds up what it is given, which costs more than assembling it.
   std::vector<PetscInt> rows(columns_.size()), columns(columns_.size());
+  std::vector<int> stands_for(size); // by unknown: itself, or the first of the joined
+  std::iota(stands_for.begin(), stands_for.end(), 0);
+  for (const int unknown : disc.joined) stands_for[unknown] = disc.joined.front();
+  const auto is_joined = [&](int unknown) {
+    return !disc.joined.empty() && stands_for[unknown] == disc.joined.front();
+  };
   for (int row = 0; row < size; ++row)
     for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k) {
       // Of constrained rows the owner's diagonal alone stays; the others get a negative index, which PETSc
       // skips.
-      const bool kept =
-          !disc.is_constrained[row] || (columns_[k] == row && operators.ownership.owner[row] == rank);
-      rows[k] = kept ? index[row] : -1;
-      columns[k] = index[columns_[k]];
+      const bool kept = !disc.is_constrained[row] || is_joined(row) ||
+                        (columns_[k] == row && operators.ownership.owner[row] == rank);
+      rows[k] = kept ? index[stands_for[row]] : -1;
+      columns[k] = index[stands_for[columns_[k]]];
+      if (kept && disc.is_constrained[row] && !is_joined(row)) identity_places_.push_back(k);
     }
+  for (const int unknown : disc.joined) {
+    if (operators.ownership.owner[unknown] != rank) continue;
+    const int first = disc.joined.front();
+    const auto add = [&](int column, double value) {
+      rows.push_back(index[unknown]);
+      columns.push_back(index[column]);
+      holder_entries_.push_back(value);
+    };
+    if (unknown != first) add(unknown, 1.0);
+    if (unknown == first) holder_place_ = static_cast<int>(holder_entries_.size());
+    add(first, unknown == first ? 0.0 : -1.0);
+  }
 
   check_petsc(MatCreate(operators.comm, matrix_.out()), "creating the system matrix");
   check_petsc(MatSetSizes(matrix_.get(), own, own, size, size), "sizing the system matrix");
@@ -186,6 +206,7 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
     sum_constant_terms(factors);
     factors_ = factors;
     factored_at_ = -1;
+    if (holder_place_ >= 0) holder_entries_[holder_place_] = factors.holder;
   }
   without_tangents_ = constant_;
   if (b && has_convection(disc_)) {
@@ -202,9 +223,9 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
 
 template <int dim>
 void LinearSystem<dim>::write(std::vector<double>& values) {
-  for (int unknown = 0; unknown < disc_.unknowns(); ++unknown)
-    if (disc_.is_constrained[unknown] && operators_.ownership.owner[unknown] == operators_.rank)
-      values[place_of(unknown, unknown)] = 1.0;
+  for (const int place : identity_places_) values[place] = 1.0;
+  values.resize(columns_.size());
+  values.insert(values.end(), holder_entries_.begin(), holder_entries_.end());
   check_petsc(MatSetValuesCOO(matrix_.get(), values.data(), INSERT_VALUES), "filling the system matrix");
 }
 

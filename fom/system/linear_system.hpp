@@ -11,16 +11,19 @@ namespace undula::fom {
 /// Factors of the operators in the system matrix
 ///   mass * mass + physical + stabilisation + damping * damping + stiffness * (stiffness + added) +
 ///   convection(b) + jumps(b),
-/// `added` the stiffness of forces that are no part of the operators (contact).
+/// `added` the stiffness of forces that are no part of the operators (contact), and what the matrix has
+/// besides.
 struct SystemFactors {
   double mass = 0;
   double stiffness = 0;
   double damping = 1; ///< 0 at rest, where the unknowns of solids are displacements
+  double holder = 0;  ///< force of a driven holder on its surroundings per velocity, dyn s/cm
   bool operator==(const SystemFactors&) const = default;
 };
 
-/// Rows of constrained unknowns are replaced by the identity. Options of the solver are open to the user
-/// under the prefix `-fsi_`. The symbolic factorisation is made once.
+/// Rows of constrained unknowns are replaced by the identity, but for those of a driven holder: they are
+/// summed up in the row of the first, and the rows of the others say that they have its value. Options of the
+/// solver are open to the user under the prefix `-fsi_`. The symbolic factorisation is made once.
 template <int dim>
 class LinearSystem {
 public:
@@ -63,7 +66,7 @@ private:
   void add_constant(const SparseMatrix& matrix, double factor);
   void sum_constant_terms(const SystemFactors& factors);
   void fill(Vec vector, const Eigen::VectorXd& values); ///< with this rank's share of them
-  void write(std::vector<double>& values);              ///< puts 1 on the diagonal of constrained rows
+  void write(std::vector<double>& values);              ///< with what the constrained rows say
   void check_residual(int step);
 
   const Discretisation<dim>& disc_;
@@ -75,6 +78,9 @@ private:
   std::vector<int> flow_places_, tangent_places_; ///< of visited entries in the pattern, in their order
   std::vector<double> constant_;                  ///< for the current factors, by place in the pattern
   std::vector<double> without_tangents_;          ///< with convection and jumps
+  std::vector<int> identity_places_;              ///< of the diagonal of constrained rows
+  std::vector<double> holder_entries_;            ///< that follow those of the pattern, of a driven holder
+  int holder_place_ = -1; ///< of SystemFactors::holder in them, on the rank that has it
   const SparseMatrix* added_stiffness_ = nullptr;
   std::optional<SystemFactors> factors_;
   PetscMat matrix_;

@@ -46,8 +46,7 @@ int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, con
   const auto& cells = operators.nonlinear_cells;
   // Only the unknowns of solids enter, and only balances that are asked for count.
   const auto free = [&](Eigen::VectorXd values) {
-    for (int unknown = 0; unknown < disc.unknowns(); ++unknown)
-      if (disc.is_constrained[unknown]) values[unknown] = 0;
+    constrain_rows(disc, values);
     return values;
   };
   const auto displacement = [&](const Eigen::VectorXd& y) -> Eigen::VectorXd {

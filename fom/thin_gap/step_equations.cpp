@@ -279,7 +279,7 @@ void add_actuator(const ThinGapStep& step, double v, HolderEquation& holder) {
   const double acceleration = time_derivative(step, v, step.x_history[step.at.deflection_rate(last)]);
   const HolderResistance resistance = holder_resistance(actuator, w, v);
   holder.residual = holder.force + actuator.moving_mass * acceleration + resistance.force -
-                    voltage_force(actuator, step.voltage);
+                    driving_force(actuator, step.voltage);
   holder.by_velocity = actuator.moving_mass * step.alpha[0] / step.dt + resistance.by_velocity +
                        resistance.by_displacement * step.dt / step.alpha[0];
 }

@@ -199,8 +199,9 @@ Observation observe(const ThinGapLayout& layout, const Scene& scene, const ThinG
   }
   seen.wall_shear_mean /= area;
   seen.tip_displacement = d[at.deflection(0)];
-  seen.holder = observe_holder(scene, step.voltage, d[at.deflection(at.nodes - 1)], holder_velocity(step, x),
-                               holder_force);
+  const bool driven = scene.operating_point.drive == Drive::voltage;
+  seen.holder = observe_holder(driven ? &scene.actuator : nullptr, step.voltage,
+                               d[at.deflection(at.nodes - 1)], holder_velocity(step, x), holder_force);
   return seen;
 }
 

@@ -22,13 +22,12 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
 }
 
 template <int dim>
-EnergyTerms TimeStepper<dim>::energy(const State& state) const {
+EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& residual) const {
   const auto& x = state.x[0];
   const Eigen::VectorXd physical = operators_.physical * x,
                         penalties =
                             operators_.stabilisation * x + jumps_of(disc_, operators_, convecting_, x),
                         damping = operators_.damping * x, elastic = operators_.stiffness * state.d[0];
-  const Eigen::VectorXd reaction = residual(state);
   const Eigen::VectorXd load = loads_at(disc_, operators_, state.time);
 
   Eigen::VectorXd sums(7);
@@ -50,9 +49,9 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
   }
   terms.carried = sums[5];
   for (const auto& node : disc_.imposed)
-    for (int c = 0; c < dim; ++c) terms.holder += reaction[node.unknown + c] * x[node.unknown + c];
+    for (int c = 0; c < dim; ++c) terms.holder += residual[node.unknown + c] * x[node.unknown + c];
   for (const auto& constrained : disc_.constrained)
-    terms.boundary += reaction[constrained.unknown] * x[constrained.unknown];
+    terms.boundary += residual[constrained.unknown] * x[constrained.unknown];
   for (const auto& [name, functional] : operators_.openings) {
     const auto& pressure = disc_.problem.boundary.at(name).pressure;
     if (pressure) terms.opening -= pressure(state.time) * functional.dot(x);
@@ -62,6 +61,6 @@ EnergyTerms TimeStepper<dim>::energy(const State& state) const {
 }
 
 template Eigen::VectorXd TimeStepper<2>::residual(const State&) const;
-template EnergyTerms TimeStepper<2>::energy(const State&) const;
+template EnergyTerms TimeStepper<2>::energy(const State&, const Eigen::VectorXd&) const;
 
 } // namespace undula::fom

@@ -7,7 +7,8 @@ namespace undula::fom {
 ///   holder + opening + body
 ///     = viscous + stabilisation + damping + contact + (mass T x, x) + (elastic force(d), x).
 struct EnergyTerms {
-  double holder = 0;        ///< power of the imposed motion on the solids (reaction times velocity)
+  double holder =
+      0; ///< power of the holder, or of another imposed motion, on the solids (reaction times velocity)
   double boundary = 0;      ///< power of imposed fluid velocities
   double opening = 0;       ///< power of the pressures on the openings
   double body = 0;          ///< power of body forces

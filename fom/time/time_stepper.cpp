@@ -1,8 +1,11 @@
 #include "fom/time/time_stepper.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
+#include "fom/time/holder_step.hpp"
 #include "fom/time/step_parts.hpp"
 #include "rom/base/error.hpp"
 
@@ -67,14 +70,40 @@ void TimeStepper<dim>::impose(const State& state, std::array<double, 3> alpha, d
                               Eigen::VectorXd& rhs) const {
   for (const auto& constrained : disc_.constrained)
     rhs[constrained.unknown] = imposed_fluid_value(constrained, t);
+  const bool driven = disc_.problem.holder.has_value();
   for (const auto& node : disc_.imposed) {
-    const auto target = imposed_displacement(disc_, node, t);
-    for (int c = 0; c < dim; ++c) {
+    const Point<dim> target = driven ? Point<dim>::Zero() : imposed_displacement(disc_, node, t);
+    for (int c = 0; c < dim - driven; ++c) {
       const int u = node.unknown + c;
       // The scheme's derivative of the exact displacement, so that the displacement itself is met exactly.
       rhs[u] = (alpha[0] * target[c] + alpha[1] * state.d[0][u] + alpha[2] * state.d[1][u]) / dt_;
     }
   }
+}
+
+template <int dim>
+template <class Solve>
+Eigen::VectorXd TimeStepper<dim>::solve_with_holder(const State& state, const std::array<double, 3>& alpha,
+                                                    double t, Eigen::VectorXd& rhs, Solve&& solve) const {
+  const auto& holder = *disc_.problem.holder;
+  const int unknown = disc_.joined.front();
+  const double others = rhs[unknown];
+  auto step = holder_step(holder, alpha, dt_, t, state, unknown, convecting_[unknown]);
+  // Stops make the equation a broken line: one more turn for every piece that the answer is not on.
+  constexpr int most = 8;
+  for (int turn = 0; turn < most; ++turn) {
+    rhs[unknown] = others + step.force;
+    SystemFactors factors;
+    factors.holder = step.by_velocity;
+    Eigen::VectorXd x = solve(factors, rhs);
+    const double v = x[unknown];
+    const auto there = holder_step(holder, alpha, dt_, t, state, unknown, v);
+    const double left = (there.by_velocity - step.by_velocity) * v - (there.force - step.force);
+    if (std::abs(left) <= 1e-10 * std::max(std::abs(step.force), std::abs(step.by_velocity * v))) return x;
+    step = there;
+  }
+  throw NumericsError("the holder does not settle at its stops", std::to_string(most) + " turns",
+                      "softer stops or a smaller time step");
 }
 
 template <int dim>
@@ -96,23 +125,30 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
     if (contact_) rhs += contact_->stiffness * (history_d / alpha[0]);
     sum_over_ranks(operators_.comm, rhs);
     rhs += loads(t);
+    constrain_rows(disc_, rhs);
     impose(state, alpha, t, rhs);
     convecting_ = scheme_ == TimeScheme::bdf2 && step > 1
                       ? Eigen::VectorXd((1 + ratio) * state.x[0] - ratio * state.x[1])
                       : state.x[0];
   }
-  system_.assemble({alpha[0] / dt_, dt_ / alpha[0]}, &convecting_);
+  iterations_ = 0;
+  const auto solve = [&](SystemFactors factors, const Eigen::VectorXd& right) {
+    factors.mass = alpha[0] / dt_;
+    factors.stiffness = dt_ / alpha[0];
+    system_.assemble(factors, &convecting_);
+    if (!operators_.has_nonlinear_solid) {
+      ++iterations_;
+      return system_.solve(right, step);
+    }
+    Eigen::VectorXd x = convecting_;
+    iterations_ += solve_newton<dim>(system_, disc_, operators_,
+                                     {{dt_ / alpha[0], 1.0}, -history_d / alpha[0], state.d[0]}, right,
+                                     newton_, step, true, x);
+    return x;
+  };
   Eigen::VectorXd x;
   try {
-    if (operators_.has_nonlinear_solid) {
-      x = convecting_;
-      iterations_ = solve_newton<dim>(system_, disc_, operators_,
-                                      {{dt_ / alpha[0], 1.0}, -history_d / alpha[0], state.d[0]}, rhs,
-                                      newton_, step, true, x);
-    } else {
-      x = system_.solve(rhs, step);
-      iterations_ = 1;
-    }
+    x = disc_.problem.holder ? solve_with_holder(state, alpha, t, rhs, solve) : solve({}, rhs);
   } catch (const NumericsError& error) {
     throw NumericsError(std::string("time step failed: ") + error.what(),
                         "step " + std::to_string(step) + ", t = " + std::to_string(t) + " s",

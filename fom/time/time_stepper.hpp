@@ -40,12 +40,12 @@ public:
   /// operators stay as they are. Collective.
   void set_contact(ContactForce contact);
 
-  /// Terms of the step that ended in `state` (state.step >= 1).
-  EnergyTerms energy(const State& state) const;
-
   /// What is left over of every equation of that step: zero but in the rows of imposed unknowns, where it is
   /// the generalised force that imposes them. Natural order, complete on every rank. Collective.
   Eigen::VectorXd residual(const State& state) const;
+
+  /// Terms of the step that ended in `state` (state.step >= 1) and left this `residual`.
+  EnergyTerms energy(const State& state, const Eigen::VectorXd& residual) const;
 
   double dt() const { return dt_; }
 
@@ -55,6 +55,10 @@ public:
 
 private:
   void impose(const State& state, std::array<double, 3> alpha, double t, Eigen::VectorXd& rhs) const;
+  /// `solve` as a function of factors and right side, with the equation of the holder in its row.
+  template <class Solve>
+  Eigen::VectorXd solve_with_holder(const State& state, const std::array<double, 3>& alpha, double t,
+                                    Eigen::VectorXd& rhs, Solve&& solve) const;
 
   const Discretisation<dim>& disc_;
   const Operators<dim>& operators_;

@@ -224,7 +224,7 @@ SwingEnergy free_swing(SolidModel model, double dt) {
       stepper.advance(state);
       energy.tip_range = std::max(energy.tip_range, std::abs(displacement_at(disc, state.d[0], flag_tip)[1]));
     }
-    const auto terms = stepper.energy(state);
+    const auto terms = stepper.energy(state, stepper.residual(state));
     energy.early = energy.late;
     energy.late = terms.kinetic + terms.elastic;
   }

@@ -33,6 +33,9 @@ void require_trainable(const Scene& scene) {
          "a reduced model is projected from penalties that are the same at all operating points",
          "a reference_velocity_cm_per_s or reference_time_s of 0, to be derived",
          "weights = \"published\", or both > 0", "stabilisation");
+  refuse(scene.operating_point.drive == Drive::voltage,
+         "a reduced model of this version is driven by a stroke", "operating_point.drive = \"voltage\"",
+         "drive = \"stroke\"", "operating_point");
   refuse(scene.operating_point.stroke_scale != 1, "a campaign states the stroke that the holder makes",
          "operating_point.stroke_scale = " + exact_number(scene.operating_point.stroke_scale),
          "1; ask the reduced model for the scaled stroke instead", "operating_point");

@@ -69,11 +69,17 @@ double wave_speed(const Scene& scene, const SimplexMesh<2>& membrane) {
 
 } // namespace
 
+std::optional<DrivenHolder> driven_holder(const Scene& scene) {
+  if (scene.operating_point.drive != Drive::voltage) return std::nullopt;
+  return DrivenHolder{scene.actuator, [scene](double t) { return drive_voltage(scene, t); }};
+}
+
 FsiProblem<2> pump_problem(const Scene& scene) {
   auto meshes = pump_meshes(scene);
   auto problem = problem_without_meshes(scene);
   problem.stabilisation = weights_in_force(scene, wave_speed(scene, meshes.solids.front()));
   problem.background = std::move(meshes.background);
+  problem.holder = driven_holder(scene);
 
   using Condition = BoundaryCondition<2>;
   for (const auto& name : problem.background.boundary_names) {

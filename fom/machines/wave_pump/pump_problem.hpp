@@ -1,6 +1,8 @@
 // From a scene to the fluid-structure problem of the pump.
 #pragma once
 
+#include <optional>
+
 #include "fom/fom.hpp"
 #include "fom/problem/problem.hpp"
 #include "fom/scene/operating_point.hpp"
@@ -13,6 +15,9 @@ namespace undula::fom {
 /// InputError for a missing or bad profile, for scales it does not bear, and for a clamp radius off the
 /// membrane.
 PumpProfile scene_profile(const Scene& scene);
+
+/// The holder of a scene that drives it by a voltage; none where its motion is imposed.
+std::optional<DrivenHolder> driven_holder(const Scene& scene);
 
 /// Meshes (from the profile, or the Gmsh files of the scene) and conditions. Solid 0 is the membrane; the
 /// others (magnet ring) move with the holder. Names of the openings: "inlet", "outlet"; every boundary other

@@ -80,7 +80,12 @@ TEST(VoltageDriveCommands, ACurveAndARunSayTheSame) {
 
 TEST(VoltageDriveCommands, WhatCannotBeDrivenIsRefused) {
   expect_refused({"hq", root + "/data/scenes/wave_pump_fixed.toml", "--voltage", "40", "--head", "50"},
-                 "finite elements");
+                 "makes no force");
+  expect_refused(with({"train", root + "/data/scenes/wave_pump_fixed_training.toml", "--output", "m.h5"},
+                      {"operating_point.drive=voltage", "operating_point.voltage_V=40",
+                       "actuator.force_N_per_V=0.4", "actuator.suspension_N_per_mm=20"}),
+                 "driven by a stroke");
+  expect_refused({"hq", scene, "--voltage", "40,x", "--head", "50"}, "list of voltages");
   expect_refused({"hq", root + "/data/models/wave_pump_fixed.h5", "--frequency", "120", "--voltage", "40"},
                  "driven by a stroke");
   expect_refused({"hq", thin_gap, "--voltage", "40", "--head", "50"}, "makes no force");

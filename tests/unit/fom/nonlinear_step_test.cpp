@@ -72,7 +72,7 @@ TEST(NonlinearStep, BalancesForcesAndPowers) {
       EXPECT_GT(held, 0);
       EXPECT_LT(left, 1e-8 * solids.elastic.cwiseAbs().sum());
 
-      const auto terms = stepper.energy(state);
+      const auto terms = stepper.energy(state, residual);
       const auto& x = state.x[0];
       const Eigen::VectorXd rate = (1.5 * x - 2 * state.x[1] + 0.5 * oldest) / dt;
       const double taken = terms.viscous + terms.stabilisation + terms.damping + terms.carried +
