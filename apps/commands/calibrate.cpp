@@ -5,6 +5,7 @@
 //     --output calibrated.toml --plot calibration.png
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
+#include "apps/input/target_curves.hpp"
 #include "apps/mpi_session.hpp"
 #include "apps/output/calibration_report.hpp"
 #include "apps/output/gnuplot.hpp"
@@ -22,9 +24,11 @@
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_tolerance.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
+#include "training/calibration/uncertainty.hpp"
 
 namespace undula::apps {
 namespace {
@@ -33,8 +37,9 @@ struct CalibrateOptions {
   std::string scene;
   std::vector<std::string> overrides;
   std::vector<std::string> data;
-  std::optional<double> frequency_Hz, stroke_mm, voltage_V;
-  std::vector<std::string> free;
+  DataSetting setting;
+  std::vector<std::string> free, profiles;
+  bool tolerances = false;
   std::string output;
   bool force = false;
   int points = 8;
@@ -63,59 +68,30 @@ FreeKey parse_free_key(const std::string& text) {
   return key;
 }
 
-/// Frequency or stroke of a measured curve: as given, else as the file states it.
-double setting(const std::optional<double>& given, const std::optional<double>& stated, const char* key,
-               const char* option, const std::string& file) {
-  if (!given && !stated) {
-    throw InputError("the data do not state how the pump was driven", std::string("no ") + key,
-                     std::string("a line # ") + key + " = ... before the columns, or " + option +
-                         " where there is one file",
-                     file);
+/// "actuator.suspension_N_per_mm=10:40:7"
+ProfileRequest parse_profile(const std::string& text) {
+  const auto colon = text.rfind(':');
+  double count = 0;
+  if (colon == std::string::npos || !read_all(std::string_view(text).substr(colon + 1), count) || count < 2 ||
+      count > 1000 || count != std::floor(count)) {
+    throw InputError("a profile cannot be read", '"' + text + '"',
+                     "section.key=low:high:values, for instance actuator.suspension_N_per_mm=10:40:7",
+                     "--profile");
   }
-  return given ? *given : *stated;
+  const FreeKey range = parse_free_key(text.substr(0, colon));
+  return {range.key, even_heads(range.low, range.high, static_cast<int>(count))};
 }
 
-std::vector<TargetCurve> make_targets(const CalibrateOptions& options, const Scene& scene,
-                                      std::span<const MeasuredCurve> measured) {
-  const bool by_voltage = scene.operating_point.drive == Drive::voltage;
-  if (by_voltage && options.stroke_mm) {
-    throw InputError("a voltage drives the scene", "--stroke " + plain_number(*options.stroke_mm),
-                     "--voltage, or operating_point.drive = \"stroke\"", "--stroke");
+/// A profile of a key that is fitted, with others beside it.
+void check_profile(const Scene& scene, std::span<const FreeKey> keys, const ProfileRequest& request) {
+  if (std::ranges::none_of(keys, [&](const FreeKey& key) { return key.key == request.key; }) ||
+      keys.size() < 2) {
+    throw InputError("a profile is that of one fitted key among others", request.key,
+                     "a key of --free, or one with a tolerance and --tolerances", "--profile");
   }
-  if (!by_voltage && options.voltage_V) {
-    throw InputError("a stroke drives the scene", "--voltage " + plain_number(*options.voltage_V),
-                     "--stroke, or operating_point.drive = \"voltage\"", "--voltage");
+  for (const double value : request.values) {
+    with_value(scene, request.key, value); // refuses values out of the key's range
   }
-  if (options.data.size() > 1 && (options.frequency_Hz || options.stroke_mm || options.voltage_V)) {
-    throw InputError("one frequency, stroke or voltage cannot serve several data files",
-                     std::to_string(options.data.size()) + " files with --frequency, --stroke or --voltage",
-                     "one file, or files that state both themselves", "--data");
-  }
-  std::vector<TargetCurve> targets;
-  for (std::size_t c = 0; c < measured.size(); ++c) {
-    const MeasuredCurve& curve = measured[c];
-    TargetCurve target;
-    target.name = options.data[c];
-    target.frequency_Hz =
-        setting(options.frequency_Hz, curve.frequency_Hz, "frequency_Hz", "--frequency", target.name);
-    OperatingPoint asked = scene.operating_point;
-    asked.frequency = target.frequency_Hz;
-    if (by_voltage) {
-      target.voltage_V = setting(options.voltage_V, curve.voltage_V, "voltage_V", "--voltage", target.name);
-      asked.voltage = target.voltage_V;
-    } else {
-      target.stroke_mm = setting(options.stroke_mm, curve.stroke_mm, "stroke_mm", "--stroke", target.name);
-      asked.stroke = units::length_from_mm(target.stroke_mm);
-    }
-    warn_of_other_point(curve, target.name, "the command line", asked);
-    target.head_mmHg = even_heads(curve.head_mmHg.front(), curve.head_mmHg.back(), options.points);
-    for (const double head : target.head_mmHg) {
-      target.flow_l_per_min.push_back(curve.fit(head));
-    }
-    target.scatter_l_per_min = curve.fit.scatter_l_per_min;
-    targets.push_back(std::move(target));
-  }
-  return targets;
 }
 
 void check_output(const CalibrateOptions& options) {
@@ -144,12 +120,27 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
   for (const std::string& text : options.free) {
     keys.push_back(parse_free_key(text));
   }
+  if (options.tolerances) {
+    check_tolerances(scene);
+    const auto held = held_keys(scene, keys);
+    keys.insert(keys.end(), held.begin(), held.end());
+  }
+  if (keys.empty()) {
+    throw InputError("nothing is free to be fitted", "neither --free nor --tolerances", "one of them",
+                     "command line");
+  }
   check_free_keys(scene, keys);
+  std::vector<ProfileRequest> requests;
+  for (const std::string& text : options.profiles) {
+    requests.push_back(parse_profile(text));
+    check_profile(scene, keys, requests.back());
+  }
   std::vector<MeasuredCurve> measured;
   for (const std::string& file : options.data) {
     measured.push_back(read_measured_curve(file));
   }
-  const std::vector<TargetCurve> targets = make_targets(options, scene, measured);
+  const std::vector<TargetCurve> targets =
+      target_curves(scene, options.data, measured, options.setting, options.points);
 
   // 2. The fit: every set of values gives all curves.
   int rank = 0;
@@ -179,14 +170,39 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
         keys, values_of(scene, keys), targets, fit);
   }
 
-  // 3. The scene and the numbers; the picture beside them.
+  // 3. What each asked key may be without a worse fit.
+  std::vector<KeyProfile> profiles;
+  {
+    std::optional<Progress> progress;
+    long values = 0, done = 0;
+    for (const ProfileRequest& request : requests) {
+      values += static_cast<long>(request.values.size());
+    }
+    if (rank == 0 && values > 0) {
+      progress.emplace("profile", values);
+    }
+    for (const ProfileRequest& request : requests) {
+      const FlowsAtValue flows = [&](double value, std::span<const FreeKey> others) {
+        return flows_of_scene(with_value(scene, request.key, value), others, targets, comm, {});
+      };
+      profiles.push_back(
+          {request.key, profile_likelihood(flows, request, keys, calibration.optimum, targets, [&] {
+             ++done;
+             if (progress) {
+               progress->update(done);
+             }
+           })});
+    }
+  }
+
+  // 4. The scene and the numbers; the picture beside them.
   on_root(comm, [&] {
     Scene calibrated = with_values(scene, keys, calibration.optimum);
     calibrated.name = std::filesystem::path(options.output).stem().string();
     for (const FreeKey& key : keys) {
       narrow_tolerance(calibrated, key.key);
     }
-    const CalibrationReport report = {calibrated, keys, targets, calibration};
+    const CalibrationReport report = {calibrated, keys, targets, calibration, profiles};
     const auto folder = std::filesystem::absolute(options.output).parent_path();
     replace_text_file(options.output, calibrated_scene_text(report, folder));
     std::cout << (options.json ? calibration_json(report) : calibration_table(report));
@@ -212,7 +228,13 @@ void add_calibrate_command(CLI::App& app) {
       ->add_option("--free", options->free,
                    "a key to fit and its range in the key's unit, section.key=low:high, may be repeated")
       ->type_name("KEY=LOW:HIGH")
-      ->required()
+      ->allow_extra_args(false);
+  command->add_flag("--tolerances", options->tolerances,
+                    "fit every input that states a tolerance as well, held by it");
+  command
+      ->add_option("--profile", options->profiles,
+                   "after the fit: the best misfit with this key held at values of a range, may be repeated")
+      ->type_name("KEY=LOW:HIGH:VALUES")
       ->allow_extra_args(false);
   command->add_option("--output", options->output, "the calibrated scene (.toml)")->required();
   command->add_flag("--force", options->force, "replace an existing output");
@@ -220,11 +242,14 @@ void add_calibrate_command(CLI::App& app) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
-      ->add_option("--frequency", options->frequency_Hz, "frequency of the data, Hz, in place of the file's")
+      ->add_option("--frequency", options->setting.frequency_Hz,
+                   "frequency of the data, Hz, in place of the file's")
       ->check(CLI::PositiveNumber);
-  command->add_option("--stroke", options->stroke_mm, "stroke of the data, mm, in place of the file's")
+  command
+      ->add_option("--stroke", options->setting.stroke_mm, "stroke of the data, mm, in place of the file's")
       ->check(CLI::PositiveNumber);
-  command->add_option("--voltage", options->voltage_V, "voltage of the data, V, in place of the file's")
+  command
+      ->add_option("--voltage", options->setting.voltage_V, "voltage of the data, V, in place of the file's")
       ->check(CLI::PositiveNumber);
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--json", options->json, "print JSON");

@@ -19,7 +19,9 @@
 #include "apps/commands/commands.hpp"
 #include "apps/input/head_list.hpp"
 #include "apps/input/level_source.hpp"
+#include "apps/input/target_curves.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/curve_band.hpp"
 #include "apps/output/curve_progress.hpp"
 #include "apps/output/curve_report.hpp"
 #include "apps/output/curve_warnings.hpp"
@@ -36,19 +38,20 @@
 namespace undula::apps {
 namespace {
 
-constexpr int default_points = 12;
+constexpr int default_points = 12, heads_per_given_curve = 8;
 
 struct HqCommandOptions {
   std::string file;
   std::optional<double> frequency_Hz;
   std::optional<double> stroke_mm;
-  std::optional<double> voltage_V;
+  std::string voltages;
   std::string heads;
-  std::string data;
+  std::vector<std::string> data;
   std::string runs;
   std::string beside;
   std::string picture;
   bool band = false;
+  std::vector<std::string> given; ///< measured curves that narrow the band
   bool json = false;
   std::vector<std::string> overrides;
   std::vector<std::string> petsc;
@@ -87,113 +90,237 @@ void warn_of_other_runs(const RecordedCurve& runs, const std::string& file, doub
   }
 }
 
-/// The band of a curve. Curves of thin gaps need one rank each, so that every rank computes its own; those of
-/// finite elements take all ranks one after the other.
-UncertaintyBand band_of_curve(const Scene& scene, std::span<const CurvePoint> points, MPI_Comm comm) {
-  std::vector<double> heads, flows;
-  for (const CurvePoint& point : points) {
-    heads.push_back(point.head_mmHg);
-    flows.push_back(point.flow_l_per_min);
+/// Flows of a scene at the settings of all targets, one after the other, and on every curve behind them.
+std::vector<double> flows_with_targets(const Scene& moved, std::span<const TargetCurve> targets,
+                                       std::span<const Scene> scenes, std::span<const double> heads,
+                                       MPI_Comm comm) {
+  std::vector<double> all;
+  const auto add = [&](const Scene& scene, std::span<const double> at) {
+    const auto flows = scene_flows(scene, at, comm).flow_l_per_min;
+    all.insert(all.end(), flows.begin(), flows.end());
+  };
+  for (const TargetCurve& target : targets) {
+    add(at_setting(moved, target), target.head_mmHg);
   }
-  const bool alone = scene.space == Space::thin_gap;
-  const MPI_Comm curve_comm = alone ? MPI_COMM_SELF : comm;
-  return propagate_tolerances(
-      scene, flows, [&](const Scene& moved) { return scene_flows(moved, heads, curve_comm).flow_l_per_min; },
-      alone ? comm : MPI_COMM_SELF);
+  for (const Scene& scene : scenes) {
+    Scene driven = moved;
+    driven.operating_point.voltage = scene.operating_point.voltage;
+    add(driven, heads);
+  }
+  return all;
 }
 
-void hq(const HqCommandOptions& options, MPI_Comm comm) {
-  // 1. Everything that may be wrong with the input comes before the first result.
-  const auto begin = std::chrono::steady_clock::now();
+/// The bands of curves that differ by their voltage. Curves of thin gaps need one rank each, so that every
+/// rank computes its own; those of finite elements take all ranks one after the other.
+std::vector<CurveBand> bands_of_curves(std::span<const Scene> scenes,
+                                       std::span<const std::vector<CurvePoint>> curves,
+                                       std::span<const TargetCurve> given, MPI_Comm comm) {
+  std::vector<double> heads;
+  for (const CurvePoint& point : curves.front()) {
+    heads.push_back(point.head_mmHg);
+  }
+  const bool alone = scenes.front().space == Space::thin_gap;
+  const MPI_Comm curve_comm = alone ? MPI_COMM_SELF : comm;
+  std::vector<double> nominal = given.empty()
+                                    ? std::vector<double>{}
+                                    : flows_with_targets(scenes.front(), given, {}, heads, curve_comm);
+  const std::size_t given_flows = nominal.size();
+  for (const auto& curve : curves) {
+    for (const CurvePoint& point : curve) {
+      nominal.push_back(point.flow_l_per_min);
+    }
+  }
+  const auto band = propagate_tolerances(
+      scenes.front(), nominal,
+      [&](const Scene& moved) { return flows_with_targets(moved, given, scenes, heads, curve_comm); },
+      alone ? comm : MPI_COMM_SELF);
+  std::vector<CurveBand> bands;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const auto curve = part_of_band(band, given_flows + k * heads.size(), heads.size());
+    bands.push_back(given.empty() ? CurveBand{curve, std::nullopt, 0}
+                                  : narrowed_band(part_of_band(band, 0, given_flows), nominal, given, curve));
+  }
+  return bands;
+}
+
+/// A table per curve, what the tolerances do, and what the data tell of the inputs.
+void print_tables(std::span<const CurveReport> reports) {
+  for (const CurveReport& report : reports) {
+    if (reports.size() > 1) {
+      std::cout << (&report == reports.data() ? "" : "\n") << setting_text(report.scene.operating_point)
+                << "\n";
+    }
+    std::cout << curve_table(report);
+    if (report.band != nullptr) {
+      std::cout << "\n" << sensitivity_table(report);
+    }
+  }
+  if (reports.front().band != nullptr && reports.front().band->posterior) {
+    std::cout << "\n" << posterior_table(*reports.front().band);
+  }
+}
+
+/// Everything asked for, read and checked.
+struct Question {
+  LevelSource source;
+  std::vector<Scene> scenes; ///< one per curve: the scene at every voltage
+  std::vector<double> heads;
+  std::vector<MeasuredCurve> measured;
+  std::vector<const MeasuredCurve*> beside_curve; ///< by curve, of `measured`; null: none
+  std::vector<RecordedCurve> recorded;
+  std::vector<TargetCurve> given;
+  std::vector<LevelSource> other; ///< by curve; empty: nothing beside
+};
+
+/// Measured data of every curve: those of its voltage. A single curve takes a single file, with a warning
+/// where it was driven otherwise.
+std::vector<const MeasuredCurve*> data_of_curves(const HqCommandOptions& options, const Question& question) {
+  const bool alone = question.scenes.size() == 1 && question.measured.size() <= 1;
+  const std::string asked = question.source.model ? "the model" : "the scene";
+  std::vector<const MeasuredCurve*> data(question.scenes.size(), nullptr);
+  for (std::size_t m = 0; m < question.measured.size(); ++m) {
+    const MeasuredCurve& curve = question.measured[m];
+    if (alone) {
+      warn_of_other_point(curve, options.data[m], asked, question.scenes.front().operating_point);
+      data.front() = &curve;
+      continue;
+    }
+    bool drawn = false;
+    for (std::size_t k = 0; k < question.scenes.size(); ++k) {
+      if (curve.voltage_V && same_setting(*curve.voltage_V, question.scenes[k].operating_point.voltage)) {
+        data[k] = &curve;
+        drawn = true;
+      }
+    }
+    if (!drawn) {
+      spdlog::warn("{} states none of the voltages of the curves, and is not shown", options.data[m]);
+    }
+  }
+  return data;
+}
+
+Question read_question(const HqCommandOptions& options) {
+  Question question;
   if (!options.picture.empty()) {
     check_picture_name(options.picture);
   }
-  const LevelSource source = read_level_source(options.file, options.overrides, options.frequency_Hz,
-                                               options.stroke_mm, options.voltage_V);
-  const Scene& scene = source.scene;
-  if (options.band && source.model) {
+  const std::vector<double> voltages =
+      options.voltages.empty()
+          ? std::vector<double>{}
+          : parse_numbers(options.voltages, {"voltages", "V", "40,45 or 36:48:4", "--voltage"});
+  for (std::size_t k = 0; k < std::max<std::size_t>(voltages.size(), 1); ++k) {
+    auto source = read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm,
+                                    voltages.empty() ? std::nullopt : std::optional(voltages[k]));
+    question.scenes.push_back(source.scene);
+    if (k == 0) {
+      question.source = std::move(source);
+    }
+  }
+  const Scene& scene = question.scenes.front();
+  if (options.band && question.source.model) {
     throw InputError("a reduced model states no tolerances of its inputs", "--band",
                      "--band with a scene (.toml); a reduced model prints its own error", options.file);
   }
   if (options.band) {
     check_tolerances(scene);
+  } else if (!options.given.empty()) {
+    throw InputError("measured curves narrow a band, and none is asked for", "--given without --band",
+                     "--band --given FILE", "--given");
   }
-  const std::vector<double> heads =
-      options.heads.empty() ? even_heads(units::pressure_to_mmHg(scene.training.head_low),
-                                         units::pressure_to_mmHg(scene.training.head_high), default_points)
-                            : parse_heads(options.heads);
-  std::optional<MeasuredCurve> measured;
-  if (!options.data.empty()) {
-    measured = read_measured_curve(options.data);
+  question.heads = options.heads.empty()
+                       ? even_heads(units::pressure_to_mmHg(scene.training.head_low),
+                                    units::pressure_to_mmHg(scene.training.head_high), default_points)
+                       : parse_heads(options.heads);
+  for (const std::string& file : options.data) {
+    question.measured.push_back(read_measured_curve(file));
   }
-  const double frequency_Hz = scene.operating_point.frequency,
-               stroke_mm = units::length_to_mm(scene.operating_point.stroke);
-  const std::string asked = source.model ? "the model" : "the scene";
-  if (measured) {
-    warn_of_other_point(*measured, options.data, asked, scene.operating_point);
+  question.beside_curve = data_of_curves(options, question);
+  std::vector<MeasuredCurve> given;
+  for (const std::string& file : options.given) {
+    given.push_back(read_measured_curve(file));
   }
-  std::vector<RecordedCurve> recorded;
+  question.given = target_curves(scene, options.given, given, {}, heads_per_given_curve);
   if (!options.runs.empty()) {
-    recorded.push_back(read_recorded_curve(options.runs));
-    warn_of_other_runs(recorded.back(), options.runs, frequency_Hz, stroke_mm);
+    question.recorded.push_back(read_recorded_curve(options.runs));
+    warn_of_other_runs(question.recorded.back(), options.runs, scene.operating_point.frequency,
+                       units::length_to_mm(scene.operating_point.stroke));
   }
-  if (source.model) {
-    recorded.push_back(kept_runs(*source.model, scene.operating_point.frequency, *options.stroke_mm));
+  if (question.source.model) {
+    question.recorded.push_back(
+        kept_runs(*question.source.model, scene.operating_point.frequency, *options.stroke_mm));
   }
-  std::optional<LevelSource> other;
   if (!options.beside.empty()) {
-    other = read_beside(options, scene);
+    for (const Scene& driven : question.scenes) {
+      question.other.push_back(read_beside(options, driven));
+    }
   }
+  return question;
+}
+
+bool has_flow(std::span<const CurvePoint> points) {
+  return std::ranges::any_of(points,
+                             [](const CurvePoint& point) { return std::isfinite(point.flow_l_per_min); });
+}
+
+void hq(const HqCommandOptions& options, MPI_Comm comm) {
+  // 1. Everything that may be wrong with the input comes before the first result.
+  const auto begin = std::chrono::steady_clock::now();
+  const Question question = read_question(options);
 
   // 2. The periodic state at every head, on a level prepared once.
   PhaseTimer timer;
-  const auto level = prepare(source, comm, timer);
-  const std::vector<CurvePoint> points = curve_with_progress("hq", *level, scene, heads, comm);
+  const auto level = prepare(question.source, comm, timer);
+  std::vector<std::vector<CurvePoint>> curves;
+  for (const Scene& scene : question.scenes) {
+    curves.push_back(curve_with_progress("hq", *level, scene, question.heads, comm));
+  }
 
   // 3. What the tolerances of the inputs do to it; what stands beside it.
-  std::optional<UncertaintyBand> band;
+  std::vector<CurveBand> bands;
   if (options.band) {
-    band = band_of_curve(scene, points, comm);
+    bands = bands_of_curves(question.scenes, curves, question.given, comm);
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   std::unique_ptr<Level> other_level;
-  std::vector<CurvePoint> beside;
-  if (other) {
-    PhaseTimer other_timer;
-    other_level = prepare(*other, comm, other_timer);
-    beside = other_level->curve(other->scene, heads);
+  std::vector<std::vector<CurvePoint>> beside;
+  for (const LevelSource& other : question.other) {
+    if (!other_level) {
+      PhaseTimer other_timer;
+      other_level = prepare(other, comm, other_timer);
+    }
+    beside.push_back(other_level->curve(other.scene, question.heads));
   }
 
   // 4. Numbers to stdout, picture beside them.
   on_root(comm, [&] {
-    warn_of_curve(*level, scene, points);
-    if (other) {
-      warn_of_curve(*other_level, other->scene, beside);
+    std::vector<CurveReport> reports;
+    std::size_t points = 0;
+    for (std::size_t k = 0; k < curves.size(); ++k) {
+      warn_of_curve(*level, question.scenes[k], curves[k]);
+      if (other_level) {
+        warn_of_curve(*other_level, question.other[k].scene, beside[k]);
+      }
+      points += curves[k].size();
+      reports.push_back(
+          {question.scenes[k], level->name(), question.source.model ? options.file : "", level->unknowns(),
+           curves[k], timer, elapsed.count(), question.beside_curve[k], bands.empty() ? nullptr : &bands[k],
+           other_level ? name_beside(*other_level, *level, question.other[k], question.scenes[k]) : "",
+           other_level ? std::span<const CurvePoint>(beside[k]) : std::span<const CurvePoint>(),
+           question.recorded});
     }
-    if (std::ranges::none_of(points, [](const auto& point) { return std::isfinite(point.flow_l_per_min); })) {
+    if (std::ranges::none_of(curves, [](const auto& curve) { return has_flow(curve); })) {
       throw NumericsError("the curve has no point", "every head", "what the warnings above say");
     }
     if (!options.json) { // JSON holds the time itself
-      spdlog::info("{} points in {} s", points.size(), decimals(elapsed.count(), 2));
+      spdlog::info("{} points in {} s", points, decimals(elapsed.count(), 2));
     }
-    const CurveReport report = {scene,
-                                level->name(),
-                                source.model ? options.file : "",
-                                level->unknowns(),
-                                points,
-                                timer,
-                                elapsed.count(),
-                                measured ? &*measured : nullptr,
-                                band ? &*band : nullptr,
-                                other ? name_beside(*other_level, *level, *other, scene) : "",
-                                beside,
-                                recorded};
-    std::cout << (options.json ? curve_json(report) : curve_table(report));
-    if (band && !options.json) {
-      std::cout << "\n" << sensitivity_table(report);
+    if (options.json) {
+      std::cout << curves_json(reports);
+    } else {
+      print_tables(reports);
     }
     if (!options.picture.empty()) {
-      plot_curve_report(options.picture, report);
+      plot_curve_reports(options.picture, reports);
     }
   });
 }
@@ -211,13 +338,18 @@ void add_hq_command(CLI::App& app) {
   CLI::Option* stroke = command->add_option("--stroke", options->stroke_mm,
                                             "amplitude of the actuator, mm; a scene has its own");
   command
-      ->add_option("--voltage", options->voltage_V,
-                   "of a scene: amplitude of the voltage that drives its actuator, V")
+      ->add_option(
+          "--voltage", options->voltages,
+          "of a scene: amplitude of the voltage that drives its actuator, V; several as low:high:step or a "
+          "list with commas, a curve each")
       ->excludes(stroke);
   command->add_option(
       "--head", options->heads,
       "heads in mmHg, low:high:step or a list with commas; default: 12 over the training box");
-  command->add_option("--data", options->data, "measured points (CSV: head_mmHg,flow_l_per_min)");
+  command
+      ->add_option("--data", options->data,
+                   "measured points (CSV: head_mmHg,flow_l_per_min); one file per voltage, may be repeated")
+      ->allow_extra_args(false);
   command->add_option("--runs", options->runs,
                       "recorded runs to draw beside the curve (what `hq FILE --json` prints)");
   command->add_option("--beside", options->beside,
@@ -225,6 +357,10 @@ void add_hq_command(CLI::App& app) {
   command->add_option("--plot", options->picture, "picture to draw (.png)");
   command->add_flag("--band", options->band,
                     "of a scene: the band that the tolerances of its inputs give, and what each contributes");
+  command
+      ->add_option("--given", options->given,
+                   "with --band: measured points that narrow it (CSV), may be repeated; docs/calibration.md")
+      ->allow_extra_args(false);
   command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--set", options->overrides,

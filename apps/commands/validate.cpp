@@ -94,9 +94,8 @@ void plot(const std::string& picture, const MeasuredCurve& curve, const Validati
   const std::vector<double> scatter(fit_flow.size(), curve.fit.scatter_l_per_min);
   const std::array<HqPoints, 2> sets = {
       {{"computed", heads, computed}, {"measured", curve.head_mmHg, curve.flow_l_per_min}}};
-  plot_hq_curve(picture, title,
-                {"quadratic fit of the data", curve.head_mmHg, fit_flow, scatter, "scatter of the data"},
-                sets);
+  const HqLine fit = {"quadratic fit of the data", curve.head_mmHg, fit_flow, scatter, "scatter of the data"};
+  plot_hq_curves(picture, title, std::span(&fit, 1), sets);
 }
 
 Comparison read_comparison(const ValidateOptions& options) {

@@ -8,11 +8,26 @@
 namespace undula::apps {
 namespace {
 
-[[noreturn]] void refuse(const std::string& text, const std::string& what) {
-  throw InputError("the list of heads cannot be read: " + what, '"' + text + '"',
-                   "heads in mmHg, low:high:step or values with commas, for instance 40:62:2 or 50,55,60",
-                   "--head");
-}
+struct Reader {
+  const std::string& text;
+  const NumberList& list;
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw InputError(std::string("the list of ") + list.noun + " cannot be read: " + what, '"' + text + '"',
+                     std::string(list.noun) + " in " + list.unit +
+                         ", low:high:step or values with commas, for instance " + list.example,
+                     list.option);
+  }
+
+  double number(const std::string& part) const {
+    double value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (part.empty() || error != std::errc() || end != part.data() + part.size() || !std::isfinite(value)) {
+      refuse('"' + part + "\" is not a number");
+    }
+    return value;
+  }
+};
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -26,47 +41,44 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-double number(const std::string& part, const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-  if (part.empty() || error != std::errc() || end != part.data() + part.size() || !std::isfinite(value)) {
-    refuse(text, '"' + part + "\" is not a number");
-  }
-  return value;
-}
-
 } // namespace
 
 std::vector<double> parse_heads(const std::string& text) {
-  constexpr std::size_t most_heads = 10000;
-  std::vector<double> heads;
+  return parse_numbers(text, {"heads", "mmHg", "40:62:2 or 50,55,60", "--head"});
+}
+
+std::vector<double> parse_numbers(const std::string& text, const NumberList& list) {
+  constexpr std::size_t most = 10000;
+  const Reader read{text, list};
+  const std::string too_many = std::string("more than 10000 ") + list.noun;
+  std::vector<double> numbers;
   for (const std::string& entry : split(text, ',')) {
     const auto parts = split(entry, ':');
     if (parts.size() == 1) {
-      heads.push_back(number(parts[0], text));
+      numbers.push_back(read.number(parts[0]));
       continue;
     }
     if (parts.size() != 3) {
-      refuse(text, "a range has three numbers");
+      read.refuse("a range has three numbers");
     }
-    const double low = number(parts[0], text);
-    const double high = number(parts[1], text);
-    const double step = number(parts[2], text);
+    const double low = read.number(parts[0]);
+    const double high = read.number(parts[1]);
+    const double step = read.number(parts[2]);
     if (step == 0 || (high - low) / step < 0) {
-      refuse(text, "the step does not lead from the first to the last head");
+      read.refuse("the step does not lead from the first to the last");
     }
     const double steps = std::floor((high - low) / step + 1e-9);
-    if (steps >= static_cast<double>(most_heads)) {
-      refuse(text, "more than 10000 heads");
+    if (steps >= static_cast<double>(most)) {
+      read.refuse(too_many);
     }
     for (int i = 0; i <= static_cast<int>(steps); ++i) {
-      heads.push_back(low + i * step);
+      numbers.push_back(low + i * step);
     }
   }
-  if (heads.size() > most_heads) {
-    refuse(text, "more than 10000 heads");
+  if (numbers.size() > most) {
+    read.refuse(too_many);
   }
-  return heads;
+  return numbers;
 }
 
 std::vector<double> even_heads(double low, double high, int count) {

@@ -10,6 +10,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "rom/base/text_file.hpp"
+#include "training/calibration/posterior.hpp"
 
 namespace undula::apps {
 namespace {
@@ -31,7 +32,10 @@ std::string key_table(const CalibrationReport& report) {
   for (std::size_t i = 0; i < report.keys.size(); ++i) {
     const FreeKey& key = report.keys[i];
     const auto at = static_cast<Eigen::Index>(i);
-    rows.push_back({key.key, plain_number(key.low) + " to " + plain_number(key.high),
+    rows.push_back({key.key,
+                    key.prior_deviation > 0 ? plain_number(key.prior_value) + " -+ " +
+                                                  plain_number(key.prior_deviation * deviations_of_95_percent)
+                                            : plain_number(key.low) + " to " + plain_number(key.high),
                     plain_number(calibration.start[at]), plain_number(calibration.optimum[at]),
                     number_or(calibration.identified.standard_error[at], "not fixed"),
                     calibration.at_bound[i] ? "yes" : "no"});
@@ -67,6 +71,30 @@ std::string sensitivity_table(const CalibrationReport& report) {
   }
   return text_table(
       {"data", "key", "mean dQ/dkey (l/min per unit of the key)", "over the range of the key (l/min)"}, rows);
+}
+
+std::string profile_table(const CalibrationReport& report, const KeyProfile& profile) {
+  std::vector<std::string> header = {profile.key, "misfit"};
+  for (const TargetCurve& target : report.targets) {
+    header.push_back(setting_text(target) + ", rms (l/min)");
+  }
+  for (const FreeKey& key : report.keys) {
+    if (key.key != profile.key) {
+      header.push_back(key.key);
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const ProfilePoint& point : profile.points) {
+    rows.push_back({plain_number(point.value), point.computed ? decimals(point.misfit, 2) : "failed"});
+    for (const double rms : point.rms_l_per_min) {
+      rows.back().push_back(decimals(rms, 4));
+    }
+    for (const double value : point.others) {
+      rows.back().push_back(plain_number(value));
+    }
+    rows.back().resize(header.size(), "-");
+  }
+  return text_table(header, rows);
 }
 
 std::string correlation_table(const CalibrationReport& report) {
@@ -157,6 +185,10 @@ std::string calibration_table(const CalibrationReport& report) {
   for (const std::string& statement : statements(report)) {
     text += "- " + statement + "\n";
   }
+  for (const KeyProfile& profile : report.profiles) {
+    text += "\nprofile, best misfit of the whole fit " + decimals(calibration.misfit, 2) + ":\n" +
+            profile_table(report, profile);
+  }
   const auto curves = static_cast<std::size_t>(calibration.points) * report.targets.size();
   return text + "\n" + std::to_string(curves) + " curves in " + decimals(calibration.seconds, 1) + " s\n";
 }
@@ -213,6 +245,18 @@ std::string calibration_json(const CalibrationReport& report) {
   result["condition"] = finite_or_null(identified.condition);
   result["directions"] = json_rows(identified.directions.transpose());
   result["direction_errors"] = json_list(identified.direction_error);
+  result["misfit"] = calibration.misfit;
+  result["profiles"] = Json::array();
+  for (const KeyProfile& profile : report.profiles) {
+    Json points = Json::array();
+    for (const ProfilePoint& point : profile.points) {
+      points.push_back({{"value", point.value},
+                        {"misfit", point.computed ? Json(point.misfit) : Json(nullptr)},
+                        {"rms_l_per_min", point.rms_l_per_min},
+                        {"others", json_list(point.others)}});
+    }
+    result["profiles"].push_back({{"key", profile.key}, {"points", points}});
+  }
   result["statements"] = statements(report);
   return result.dump(2) + "\n";
 }
@@ -247,7 +291,8 @@ std::string calibrated_scene_text(const CalibrationReport& report, const std::fi
     const FreeKey& key = report.keys[i];
     const auto at = static_cast<Eigen::Index>(i);
     text += "# free: " + key.key + " in " + plain_number(key.low) + " to " + plain_number(key.high) +
-            ", from " + plain_number(report.calibration.start[at]) + " to " +
+            (key.prior_deviation > 0 ? ", held by its tolerance" : "") + ", from " +
+            plain_number(report.calibration.start[at]) + " to " +
             plain_number(report.calibration.optimum[at]) + ", standard error " +
             number_or(report.calibration.identified.standard_error[at], "not fixed by the data") +
             (report.calibration.at_bound[i] ? ", at an end of its range" : "") + "\n";

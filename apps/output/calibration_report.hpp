@@ -8,9 +8,14 @@
 
 #include "apps/apps.hpp"
 #include "apps/input/measured_curve.hpp"
-#include "training/calibration/calibrate.hpp"
+#include "training/calibration/profile.hpp"
 
 namespace undula::apps {
+
+struct KeyProfile {
+  std::string key;
+  std::vector<ProfilePoint> points;
+};
 
 /// What was asked and what was answered.
 struct CalibrationReport {
@@ -18,9 +23,10 @@ struct CalibrationReport {
   std::span<const FreeKey> keys;
   std::span<const TargetCurve> targets;
   const Calibration& calibration;
+  std::span<const KeyProfile> profiles;
 };
 
-/// Tables of keys, curves and sensitivities, correlations, and what the data do not fix.
+/// Tables of keys, curves and sensitivities, correlations, profiles, and what the data do not fix.
 std::string calibration_table(const CalibrationReport& report);
 
 /// The same as JSON; null for numbers that the data do not fix.

@@ -104,7 +104,11 @@ std::string curve_table(const CurveReport& report) {
     header.emplace_back("measured, fit (l/min)");
   }
   if (report.band != nullptr) {
-    header.emplace_back("by tolerances (l/min)");
+    if (report.band->posterior) {
+      header.insert(header.end(), {"band, data given (l/min)", "of samples (l/min)"});
+    } else {
+      header.emplace_back("by tolerances (l/min)");
+    }
   }
   if (!report.beside.empty()) {
     header.emplace_back(report.beside_level + " (l/min)");
@@ -127,8 +131,11 @@ std::string curve_table(const CurveReport& report) {
       row.push_back(flow ? decimals(*flow, 3) : "-");
     }
     if (report.band != nullptr) {
-      const double width = report.band->half_width[i];
+      const double width = report.band->half_width(i);
       row.push_back(std::isfinite(width) ? "-+" + decimals(width, 3) : "unknown");
+      if (report.band->posterior) {
+        row.push_back("-+" + decimals(report.band->half_width_of_samples(i), 3));
+      }
     }
     if (!report.beside.empty()) {
       row.push_back(number_or(report.beside[i].flow_l_per_min, 4, "failed"));
@@ -156,7 +163,7 @@ std::string sensitivity_table(const CurveReport& report) {
   };
   std::vector<std::vector<std::string>> rows;
   std::string notes;
-  for (const InputEffect& input : report.band->inputs) {
+  for (const InputEffect& input : report.band->tolerances.inputs) {
     rows.push_back({input.key, plain_number(input.value), plain_number(input.tolerance)});
     for (const std::size_t i : shown) {
       rows.back().push_back(signed_number(input.up[i]) + " / " + signed_number(input.down[i]));
@@ -220,7 +227,9 @@ nlohmann::ordered_json tolerances_json(const UncertaintyBand& band) {
 
 } // namespace
 
-std::string curve_json(const CurveReport& report) {
+namespace {
+
+nlohmann::ordered_json report_json(const CurveReport& report) {
   const Scene& scene = report.scene;
   nlohmann::ordered_json result = {{"scene", scene.name}, {"level", report.level}};
   if (!report.model_file.empty()) {
@@ -247,9 +256,13 @@ std::string curve_json(const CurveReport& report) {
       entry["measured_l_per_min"] = flow ? nlohmann::ordered_json(*flow) : nlohmann::ordered_json(nullptr);
     }
     if (report.band != nullptr) {
-      entry["error_l_per_min"] = finite_or_null(report.band->half_width[i]);
-      entry["error_low_l_per_min"] = finite_or_null(report.band->low[i]);
-      entry["error_high_l_per_min"] = finite_or_null(report.band->high[i]);
+      entry["error_l_per_min"] = finite_or_null(report.band->half_width(i));
+      if (report.band->posterior) {
+        entry["error_of_samples_l_per_min"] = finite_or_null(report.band->half_width_of_samples(i));
+      } else {
+        entry["error_low_l_per_min"] = finite_or_null(report.band->tolerances.low[i]);
+        entry["error_high_l_per_min"] = finite_or_null(report.band->tolerances.high[i]);
+      }
     }
     if (!report.beside.empty()) {
       entry["beside"] = point_json(report.beside[i]);
@@ -258,48 +271,102 @@ std::string curve_json(const CurveReport& report) {
     result["points"].push_back(std::move(entry));
   }
   if (report.band != nullptr) {
-    result["tolerances"] = tolerances_json(*report.band);
+    result["tolerances"] = tolerances_json(report.band->tolerances);
+    if (report.band->posterior) {
+      result["given_data"] = posterior_json(*report.band);
+    }
   }
-  return result.dump(2) + "\n";
+  return result;
 }
 
-bool plot_curve_report(const std::filesystem::path& picture, const CurveReport& report) {
+} // namespace
+
+std::string curves_json(std::span<const CurveReport> reports) {
+  if (reports.size() == 1) {
+    return report_json(reports.front()).dump(2) + "\n";
+  }
+  nlohmann::ordered_json all = {{"curves", nlohmann::ordered_json::array()}};
+  for (const CurveReport& report : reports) {
+    all["curves"].push_back(report_json(report));
+  }
+  return all.dump(2) + "\n";
+}
+
+namespace {
+
+/// Numbers of a report in the order of its heads, for a picture.
+struct DrawnCurve {
+  std::vector<double> head, flow, error, beside_head, beside_flow;
+};
+
+DrawnCurve drawn(const CurveReport& report) {
   const auto finite_or_zero = [](double value) { return std::isfinite(value) ? value : 0.0; };
-  std::vector<double> head, flow, error;
+  DrawnCurve curve;
   for (const std::size_t i : upwards(report.points)) {
     const CurvePoint& point = report.points[i];
-    head.push_back(point.head_mmHg);
-    flow.push_back(point.flow_l_per_min);
+    curve.head.push_back(point.head_mmHg);
+    curve.flow.push_back(point.flow_l_per_min);
     if (report.band != nullptr) {
-      error.push_back(finite_or_zero(report.band->half_width[i]));
+      curve.error.push_back(finite_or_zero(report.band->posterior ? report.band->half_width_of_samples(i)
+                                                                  : report.band->half_width(i)));
     } else if (!std::isnan(point.error_l_per_min)) {
-      error.push_back(finite_or_zero(point.error_l_per_min));
+      curve.error.push_back(finite_or_zero(point.error_l_per_min));
     }
   }
-  if (error.size() != flow.size()) {
-    error.clear();
+  if (curve.error.size() != curve.flow.size()) {
+    curve.error.clear();
   }
-  std::vector<double> beside_head, beside_flow;
   for (const std::size_t i : upwards(report.beside)) {
-    beside_head.push_back(report.beside[i].head_mmHg);
-    beside_flow.push_back(report.beside[i].flow_l_per_min);
+    curve.beside_head.push_back(report.beside[i].head_mmHg);
+    curve.beside_flow.push_back(report.beside[i].flow_l_per_min);
   }
+  return curve;
+}
+
+std::string band_label(const CurveReport& report) {
+  if (report.band == nullptr) {
+    return "error estimate";
+  }
+  return report.band->posterior ? "95 % of measured samples" : "by tolerances of the inputs (95 %)";
+}
+
+} // namespace
+
+bool plot_curve_reports(const std::filesystem::path& picture, std::span<const CurveReport> reports) {
+  std::vector<DrawnCurve> curves;
+  curves.reserve(reports.size());
+  for (const CurveReport& report : reports) {
+    curves.push_back(drawn(report));
+  }
+  const bool several = reports.size() > 1;
+  std::vector<HqLine> lines;
   std::vector<HqPoints> point_sets;
-  if (!beside_flow.empty()) {
-    point_sets.push_back({report.beside_level, beside_head, beside_flow, true});
-  }
-  for (const RecordedCurve& runs : report.recorded) {
-    if (same_setting(runs.frequency_Hz, report.scene.operating_point.frequency) &&
-        same_setting(runs.stroke_mm, stroke_mm(report.scene))) {
-      point_sets.push_back({"recorded runs", runs.head_mmHg, runs.flow_l_per_min});
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    const CurveReport& report = reports[k];
+    const DrawnCurve& curve = curves[k];
+    const int line = several ? static_cast<int>(k) : -1;
+    const std::string setting = setting_text(report.scene.operating_point),
+                      at = several ? ", " + setting : "";
+    lines.push_back(
+        {several ? setting : report.level, curve.head, curve.flow, curve.error, band_label(report) + at});
+    if (!curve.beside_flow.empty()) {
+      point_sets.push_back({report.beside_level + at, curve.beside_head, curve.beside_flow, true, line});
+    }
+    for (const RecordedCurve& runs : report.recorded) {
+      if (same_setting(runs.frequency_Hz, report.scene.operating_point.frequency) &&
+          same_setting(runs.stroke_mm, stroke_mm(report.scene))) {
+        point_sets.push_back({"recorded runs" + at, runs.head_mmHg, runs.flow_l_per_min, false, line});
+      }
+    }
+    if (report.measured != nullptr) {
+      point_sets.push_back(
+          {"measured" + at, report.measured->head_mmHg, report.measured->flow_l_per_min, false, line});
     }
   }
-  if (report.measured != nullptr) {
-    point_sets.push_back({"measured", report.measured->head_mmHg, report.measured->flow_l_per_min});
-  }
-  const std::string title = report.scene.name + ": " + setting_text(report.scene.operating_point);
-  const char* band = report.band != nullptr ? "by tolerances of the inputs (95 %)" : "error estimate";
-  return plot_hq_curve(picture, title, {report.level, head, flow, error, band}, point_sets);
+  const std::string title =
+      reports.front().scene.name + ": " +
+      (several ? reports.front().level : setting_text(reports.front().scene.operating_point));
+  return plot_hq_curves(picture, title, lines, point_sets);
 }
 
 } // namespace undula::apps

@@ -11,10 +11,10 @@
 #include "apps/apps.hpp"
 #include "apps/input/measured_curve.hpp"
 #include "apps/input/recorded_curve.hpp"
+#include "apps/output/curve_band.hpp"
 #include "fom/levels/curve_point.hpp"
 #include "fom/scene/scene.hpp"
 #include "rom/base/phase_timer.hpp"
-#include "training/calibration/uncertainty.hpp"
 
 namespace undula::apps {
 
@@ -28,7 +28,7 @@ struct CurveReport {
   const PhaseTimer& preparation;
   double seconds = 0;                      ///< wall time of preparation and curve
   const MeasuredCurve* measured = nullptr; ///< nullptr: no data given
-  const UncertaintyBand* band = nullptr;   ///< by the tolerances of the scene; nullptr: not asked for
+  const CurveBand* band = nullptr;         ///< by the tolerances of the scene; nullptr: not asked for
   std::string beside_level;                ///< of another level at the same heads, else empty
   std::span<const CurvePoint> beside;
   std::span<const RecordedCurve> recorded; ///< runs at this frequency and stroke, for the picture
@@ -52,10 +52,11 @@ std::string sensitivity_table(const CurveReport& report);
 /// error_l_per_min is that of the level, or of the band. With data also measured_l_per_min (null outside of
 /// them). With a band also `tolerances[]`, the change of the flow at every head by either end of every
 /// tolerance.
-std::string curve_json(const CurveReport& report);
+/// Several curves are an array `curves[]` of such objects.
+std::string curves_json(std::span<const CurveReport> reports);
 
-/// The curve as a line with its band or error estimate, the level beside it as another, recorded runs and
+/// Every curve as a line with its band or error estimate, the level beside it as another, recorded runs and
 /// measured samples as points. Returns false, after a warning, where gnuplot is missing.
-bool plot_curve_report(const std::filesystem::path& picture, const CurveReport& report);
+bool plot_curve_reports(const std::filesystem::path& picture, std::span<const CurveReport> reports);
 
 } // namespace undula::apps

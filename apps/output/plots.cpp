@@ -53,14 +53,23 @@ std::string axes(const std::string& title, const std::string& x_label, const std
 
 } // namespace
 
-bool plot_hq_curve(const std::filesystem::path& picture, const std::string& title, const HqLine& line,
-                   std::span<const HqPoints> point_sets) {
+bool plot_hq_curves(const std::filesystem::path& picture, const std::string& title,
+                    std::span<const HqLine> lines, std::span<const HqPoints> point_sets) {
+  struct Colours {
+    const char *line, *band;
+  };
+  constexpr std::array colours = {Colours{"#1f4e8c", "#b0c4de"}, Colours{"#c0392b", "#edbbb4"},
+                                  Colours{"#27853f", "#b8dcc0"}, Colours{"#8e44ad", "#d7bfe3"}};
   DataBlocks blocks;
   std::vector<std::string> items;
 
-  // 1. The band, if there is one, as a closed polygon: up along flow - error, down along flow + error.
-  const std::size_t n = line.head_mmHg.size();
-  if (!line.error_l_per_min.empty()) {
+  // 1. The bands, as closed polygons: up along flow - error, down along flow + error.
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const HqLine& line = lines[k];
+    const std::size_t n = line.head_mmHg.size();
+    if (line.error_l_per_min.empty()) {
+      continue;
+    }
     const int band = blocks.begin("band: flow (l/min), head (mmHg)");
     for (std::size_t i = 0; i < n; ++i) {
       blocks.add(row(line.flow_l_per_min[i] - line.error_l_per_min[i], line.head_mmHg[i]));
@@ -68,20 +77,26 @@ bool plot_hq_curve(const std::filesystem::path& picture, const std::string& titl
     for (std::size_t i = n; i-- > 0;) {
       blocks.add(row(line.flow_l_per_min[i] + line.error_l_per_min[i], line.head_mmHg[i]));
     }
-    items.push_back(plot_item(band, "with filledcurves closed fc rgb '#b0c4de'", line.band_label));
+    items.push_back(plot_item(band,
+                              std::string("with filledcurves closed fs transparent solid 0.7 fc rgb '") +
+                                  colours[k % colours.size()].band + "'",
+                              line.band_label));
   }
 
-  // 2. The line.
-  const int curve = blocks.begin("curve: flow (l/min), head (mmHg)");
-  for (std::size_t i = 0; i < n; ++i) {
-    blocks.add(row(line.flow_l_per_min[i], line.head_mmHg[i]));
+  // 2. The lines.
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    const int curve = blocks.begin("curve: flow (l/min), head (mmHg)");
+    for (std::size_t i = 0; i < lines[k].head_mmHg.size(); ++i) {
+      blocks.add(row(lines[k].flow_l_per_min[i], lines[k].head_mmHg[i]));
+    }
+    items.push_back(
+        plot_item(curve, std::string("with lines lw 2 lc rgb '") + colours[k % colours.size()].line + "'",
+                  lines[k].label));
   }
-  items.push_back(plot_item(curve, "with lines lw 2 lc rgb '#1f4e8c'", line.label));
 
   // 3. The points and further curves.
-  const std::array styles = {"with points pt 6 ps 1 lc rgb '#c0392b'",
-                             "with points pt 7 ps 1.2 lc rgb '#1f4e8c'",
-                             "with points pt 4 ps 1.2 lc rgb '#27853f'"};
+  const std::array styles = {"pt 6 ps 1 lc rgb '#c0392b'", "pt 7 ps 1.2 lc rgb '#1f4e8c'",
+                             "pt 4 ps 1.2 lc rgb '#27853f'"};
   std::size_t set = 0;
   for (const HqPoints& points : point_sets) {
     if (points.head_mmHg.empty()) {
@@ -91,8 +106,19 @@ bool plot_hq_curve(const std::filesystem::path& picture, const std::string& titl
     for (std::size_t i = 0; i < points.head_mmHg.size(); ++i) {
       blocks.add(row(points.flow_l_per_min[i], points.head_mmHg[i]));
     }
-    items.push_back(points.as_curve ? plot_item(block, "with lines lw 2 dt 2 lc rgb '#8e44ad'", points.label)
-                                    : plot_item(block, styles[set++ % styles.size()], points.label));
+    const std::string of_line =
+        points.line < 0 ? ""
+                        : std::string(" lc rgb '") +
+                              colours[static_cast<std::size_t>(points.line) % colours.size()].line + "'";
+    if (points.as_curve) {
+      items.push_back(plot_item(
+          block, "with lines lw 2 dt 2" + (of_line.empty() ? " lc rgb '#8e44ad'" : of_line), points.label));
+    } else {
+      items.push_back(plot_item(block,
+                                "with points " + (of_line.empty() ? std::string(styles[set++ % styles.size()])
+                                                                  : "pt 6 ps 1" + of_line),
+                                points.label));
+    }
   }
   const std::string commands = axes(title, "flow (l/min)", "head (mmHg)") +
                                "set grid\nset key bottom left\n" + plot_command("plot", items);

@@ -26,12 +26,13 @@ struct HqPoints {
   std::span<const double> head_mmHg;
   std::span<const double> flow_l_per_min;
   bool as_curve = false; ///< a dashed line through them, in their order
+  int line = -1;         ///< that they belong to and share the colour of, where there are several
 };
 
-/// Head over flow: the line with its band, and any number of sets of points (empty sets are left out).
+/// Head over flow: lines with their bands, and any number of sets of points (empty sets are left out).
 /// Returns false, after a warning, where gnuplot is missing.
-bool plot_hq_curve(const std::filesystem::path& picture, const std::string& title, const HqLine& line,
-                   std::span<const HqPoints> point_sets);
+bool plot_hq_curves(const std::filesystem::path& picture, const std::string& title,
+                    std::span<const HqLine> lines, std::span<const HqPoints> point_sets);
 
 struct Line {
   std::string label;

@@ -116,18 +116,42 @@ void plot_membrane(const std::filesystem::path& folder, const TimeSeries& membra
              "axial displacement of the membrane (mm)", lines);
 }
 
-void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, const std::string& title) {
-  const auto column = [&](const std::string& name) {
-    const auto found = std::find(series.columns.begin(), series.columns.end(), name);
-    const auto index = static_cast<std::size_t>(found - series.columns.begin());
-    std::vector<double> values;
-    for (std::size_t row = 0; row < series.rows(); ++row) {
-      values.push_back(series.value(row, index));
+/// A column of a time series; empty where it has none of this name.
+std::vector<double> column(const TimeSeries& series, const std::string& name) {
+  const auto found = std::find(series.columns.begin(), series.columns.end(), name);
+  if (found == series.columns.end()) {
+    return {};
+  }
+  const auto index = static_cast<std::size_t>(found - series.columns.begin());
+  std::vector<double> values;
+  for (std::size_t row = 0; row < series.rows(); ++row) {
+    values.push_back(series.value(row, index));
+  }
+  return values;
+}
+
+/// A holder that a voltage drives: displacement, force on membrane and fluid, force of the coil.
+void plot_holder(const std::filesystem::path& folder, const TimeSeries& series, const std::string& title) {
+  const auto time = column(series, "time_s"), place = column(series, "holder_displacement_mm");
+  auto force = column(series, "holder_force_N"), coil = column(series, "actuator_force_N");
+  if (coil.empty()) {
+    return;
+  }
+  constexpr double parts = 10; // so that one axis serves all
+  for (auto* values : {&force, &coil}) {
+    for (double& value : *values) {
+      value /= parts;
     }
-    return values;
-  };
-  const auto time = column("time_s"), outflow = column("outflow_l_per_min"),
-             inflow = column("inflow_l_per_min");
+  }
+  const std::array<Line, 3> lines = {{{"displacement (mm)", time, place},
+                                      {"force on membrane and fluid (10 N)", time, force},
+                                      {"force of the coil (10 N)", time, coil}}};
+  plot_lines(folder / "holder.png", title, "time (s)", "holder", lines);
+}
+
+void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, const std::string& title) {
+  const auto time = column(series, "time_s"), outflow = column(series, "outflow_l_per_min"),
+             inflow = column(series, "inflow_l_per_min");
   const std::array<Line, 2> lines = {{{"outflow", time, outflow}, {"inflow", time, inflow}}};
   plot_lines(folder / "flow.png", title, "time (s)", "flow (l/min)", lines);
 }
@@ -148,6 +172,7 @@ void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
       title + ", t/T = " + plain_number(static_cast<double>(state.step) / scene.time.steps_per_period));
   plot_membrane(run.folder(), run.membrane(), run.view().probes.radius, scene.time.steps_per_period, title);
   plot_flow(run.folder(), run.series(), title);
+  plot_holder(run.folder(), run.series(), title);
 }
 
 } // namespace undula::apps

@@ -179,8 +179,11 @@ bool descend(Sampler& sampler, Eigen::MatrixXd& slopes, const FitOptions& option
     const double before = sampler.objective(unit);
     if (change.lpNorm<Eigen::Infinity>() < options.least_step) return true;
     if (step == options.most_steps) return false;
-    if (sampler.objective(unit + change) >= before && sampler.objective(unit + change / 2) >= before)
-      return true; // noise, or curvature that the search has seen better
+    constexpr int halvings = 4;
+    bool lower = false;
+    for (int halving = 0; halving <= halvings && !lower; ++halving, change /= 2)
+      lower = sampler.objective(unit + change) < before;
+    if (!lower) return true; // noise, or curvature that the search has seen better
   }
 }
 
@@ -198,7 +201,7 @@ BoundedFit fit_within_bounds(const Residuals& residuals, const Eigen::VectorXd& 
   sampler.objective(unit_start);
 
   BoundedFit fit;
-  fit.converged = minimise(sampler, unit_start, options);
+  fit.converged = !options.search || minimise(sampler, unit_start, options);
   Eigen::MatrixXd slopes;
   fit.converged = descend(sampler, slopes, options) && fit.converged;
   const Eigen::VectorXd best = sampler.best();

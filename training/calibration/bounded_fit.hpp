@@ -14,6 +14,7 @@ using Residuals = std::function<std::optional<Eigen::VectorXd>(const Eigen::Vect
 
 /// Lengths are parts of the box's width in each direction.
 struct FitOptions {
+  bool search = true;            ///< before the steps of Gauss and Newton
   double first_step = 0.15;      ///< of the search: from the start to the first points around it
   double last_step = 1e-2;       ///< at which the search ends
   double difference_step = 0.05; ///< of derivatives, to both sides
@@ -38,7 +39,8 @@ struct BoundedFit {
 ///    shrink from first_step to last_step. It needs no derivatives, and noise below what a step of that
 ///    length changes does not mislead it. A point without residuals counts as worse than the worst so far: it
 ///    is never accepted, and the region of trust shrinks away from it.
-/// 2. Steps of Gauss and Newton within the bounds, halved once where they do not lower the sum, as
+/// 2. Steps of Gauss and Newton within the bounds, halved up to four times where they do not lower the sum,
+/// as
 ///    long as they do: along a valley the sum hardly tells where its lowest point is, but the residuals do.
 ///
 /// Derivatives are central differences; towards a bound, or a point without residuals, those of the other

@@ -9,6 +9,7 @@
 #include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "training/calibration/posterior.hpp"
 #include "training/calibration/scene_flows.hpp"
 #include "training/training.hpp"
 
@@ -90,6 +91,34 @@ std::string setting_text(const TargetCurve& target) {
                                : plain_number(target.stroke_mm) + " mm");
 }
 
+Scene at_setting(const Scene& scene, const TargetCurve& target) {
+  const bool by_voltage = scene.operating_point.drive == Drive::voltage;
+  return with_value(with_value(scene, stated_by_data[0], target.frequency_Hz),
+                    stated_by_data[by_voltage ? 2 : 1], by_voltage ? target.voltage_V : target.stroke_mm);
+}
+
+std::vector<FreeKey> held_keys(const Scene& scene, std::span<const FreeKey> beside) {
+  constexpr double reach = 3;
+  std::vector<FreeKey> held;
+  for (const auto& [key, tolerance] : scene.tolerances) {
+    if (std::ranges::any_of(beside, [&key = key](const FreeKey& other) { return other.key == key; }))
+      continue;
+    const double value = surface_value(scene, key), deviation = tolerance / deviations_of_95_percent;
+    // Where the key may not go that far, the tolerance itself ends within what is allowed.
+    const auto end = [&, &name = key, &tolerance = tolerance](double sign) {
+      const double far = value + sign * reach * deviation;
+      try {
+        with_value(scene, name, far);
+        return far;
+      } catch (const InputError&) {
+        return value + sign * tolerance;
+      }
+    };
+    held.push_back({key, end(-1), end(1), deviation, value});
+  }
+  return held;
+}
+
 FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
                              std::span<const TargetCurve> targets, MPI_Comm comm,
                              std::function<void(const std::string&)> on_failure) {
@@ -102,11 +131,7 @@ FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
       const auto level = prepare_level(changed, comm, timer);
       std::vector<double> all;
       for (const TargetCurve& target : targets) {
-        const bool by_voltage = scene.operating_point.drive == Drive::voltage;
-        const Scene driven =
-            with_value(with_value(changed, stated_by_data[0], target.frequency_Hz),
-                       stated_by_data[by_voltage ? 2 : 1], by_voltage ? target.voltage_V : target.stroke_mm);
-        const SceneFlows flows = scene_flows(*level, driven, target.head_mmHg, comm);
+        const SceneFlows flows = scene_flows(*level, at_setting(changed, target), target.head_mmHg, comm);
         all.insert(all.end(), flows.flow_l_per_min.begin(), flows.flow_l_per_min.end());
         // The numbers decide, as they are the same on every rank.
         if (std::ranges::all_of(flows.flow_l_per_min, [](double flow) { return std::isfinite(flow); }))
@@ -128,7 +153,8 @@ FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
 Calibration calibrate(const FlowsOfValues& flows, std::span<const FreeKey> keys, const Eigen::VectorXd& start,
                       std::span<const TargetCurve> targets, const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const Eigen::VectorXd measured = measured_flows(targets);
+  const Eigen::VectorXd measured = measured_flows(targets), deviation = deviations(targets);
+  const bool held = std::ranges::any_of(keys, [](const FreeKey& key) { return key.prior_deviation > 0; });
   const auto size = static_cast<Eigen::Index>(keys.size());
   Eigen::VectorXd low(size), high(size);
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -140,9 +166,27 @@ Calibration calibrate(const FlowsOfValues& flows, std::span<const FreeKey> keys,
     auto computed = flows(values);
     if (!computed) return std::nullopt;
     if (start_flows.size() == 0) start_flows = *computed; // the start comes first
-    return *computed - measured;
+    Eigen::VectorXd all = *computed - measured;
+    if (!held) return all;
+    all = all.cwiseQuotient(deviation);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const FreeKey& key = keys[static_cast<std::size_t>(i)];
+      if (key.prior_deviation <= 0) continue;
+      all.conservativeResize(all.size() + 1);
+      all[all.size() - 1] = (values[i] - key.prior_value) / key.prior_deviation;
+    }
+    return all;
   };
-  const BoundedFit fit = fit_within_bounds(residuals, low, high, start, options);
+  FitOptions steps = options;
+  steps.search = options.search && !held; // the tolerances leave no valley to search
+  BoundedFit fit = fit_within_bounds(residuals, low, high, start, steps);
+  const Eigen::Index flows_in_all = measured.size();
+  const double misfit =
+      held ? fit.residuals.squaredNorm() : fit.residuals.cwiseQuotient(deviation).squaredNorm();
+  if (held) { // of the flows alone, l/min
+    fit.residuals = fit.residuals.head(flows_in_all).cwiseProduct(deviation).eval();
+    fit.jacobian = (deviation.asDiagonal() * fit.jacobian.topRows(flows_in_all)).eval();
+  }
 
   Calibration result;
   result.start = start;
@@ -162,8 +206,9 @@ Calibration calibrate(const FlowsOfValues& flows, std::span<const FreeKey> keys,
                              fit.jacobian.middleRows(first, heads)});
     first += heads;
   }
-  result.identified = identifiability(fit.jacobian, high - low, deviations(targets),
-                                      flow_noise_l_per_min / options.difference_step);
+  result.misfit = misfit;
+  result.identified =
+      identifiability(fit.jacobian, high - low, deviation, flow_noise_l_per_min / options.difference_step);
   result.converged = fit.converged;
   result.points = fit.points;
   result.refused = fit.refused;

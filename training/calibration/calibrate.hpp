@@ -21,6 +21,9 @@ namespace undula::training {
 struct FreeKey {
   std::string key;
   double low = 0, high = 0;
+  /// A tolerance that holds the key: standard deviation about the value at which the scene states it; 0:
+  /// none.
+  double prior_deviation = 0, prior_value = 0;
 };
 
 /// A measured curve at the heads where it is compared.
@@ -52,8 +55,9 @@ struct Calibration {
   std::vector<CalibratedCurve> curves;
   Identifiability identified;
   bool converged = false;
-  int points = 0;  ///< sets of values whose curves were computed
-  int refused = 0; ///< of them, without result
+  double misfit = 0; ///< sum of squares of the residuals and held keys in their deviations
+  int points = 0;    ///< sets of values whose curves were computed
+  int refused = 0;   ///< of them, without result
   double seconds = 0;
 };
 
@@ -79,10 +83,19 @@ FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
                              std::span<const TargetCurve> targets, MPI_Comm comm,
                              std::function<void(const std::string&)> on_failure);
 
+/// The scene at the frequency and drive of a target.
+Scene at_setting(const Scene& scene, const TargetCurve& target);
+
+/// Keys of the tolerances of a scene, each held by its own (a normal distribution of which it is the 95 %
+/// interval), within three standard deviations, as far as the key allows. Keys in `beside` are left out.
+std::vector<FreeKey> held_keys(const Scene& scene, std::span<const FreeKey> beside);
+
 /// Least squares of computed - measured over all heads of all curves, each with the same weight, within the
-/// ranges (fit_within_bounds). Standard errors take every head as one independent sample of the scatter of
-/// its data, and the model as true. A key that changes the flow over its range by less than the noise of a
-/// difference, flow_noise / difference_step, has no influence.
+/// ranges (fit_within_bounds). Where tolerances hold a key, the residuals count in deviations of the samples
+/// and the distance of every such key from its stated value in deviations of it: the most probable values of
+/// normal inputs. Standard errors take every head as one independent sample of the scatter of its data, and
+/// the model as true. A key that changes the flow over its range by less than the noise of a difference,
+/// flow_noise / difference_step, has no influence.
 Calibration calibrate(const FlowsOfValues& flows, std::span<const FreeKey> keys, const Eigen::VectorXd& start,
                       std::span<const TargetCurve> targets, const FitOptions& options = {});
 

@@ -41,12 +41,6 @@ std::vector<double> change(const Scene& scene, std::span<const double> nominal, 
 
 bool is_known(double value) { return std::isfinite(value); }
 
-/// Change of the flow that a tolerance makes, from its two sides.
-double half_difference(double up, double down) {
-  if (is_known(up) && is_known(down)) return (up - down) / 2;
-  return is_known(up) ? up : -down; // NaN where both are
-}
-
 /// Largest change to one side; 0 where both lead to the other.
 double largest(double up, double down, double sign) {
   if (!is_known(up) && !is_known(down)) return unknown;
@@ -57,6 +51,12 @@ double largest(double up, double down, double sign) {
 }
 
 } // namespace
+
+double effect_of_tolerance(const InputEffect& input, std::size_t head) {
+  const double up = input.up[head], down = input.down[head];
+  if (is_known(up) && is_known(down)) return (up - down) / 2;
+  return is_known(up) ? up : -down; // NaN where both are
+}
 
 void check_tolerances(const Scene& scene) {
   if (scene.tolerances.empty())
@@ -111,7 +111,7 @@ UncertaintyBand propagate_tolerances(const Scene& scene, std::span<const double>
     double width = 0, low = 0, high = 0;
     for (const InputEffect& input : band.inputs) {
       const double up = input.up[head], down = input.down[head];
-      width = std::hypot(width, half_difference(up, down));
+      width = std::hypot(width, effect_of_tolerance(input, head));
       low = std::hypot(low, largest(up, down, -1));
       high = std::hypot(high, largest(up, down, 1));
     }

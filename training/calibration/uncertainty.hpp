@@ -33,6 +33,10 @@ struct UncertaintyBand {
   std::vector<InputEffect> inputs;
 };
 
+/// Change of the flow at a head by the tolerance of an input, l/min: (up - down) / 2, or of one side where
+/// the other is unknown; NaN where both are.
+double effect_of_tolerance(const InputEffect& input, std::size_t head);
+
 /// Throws InputError, with what to write, for a scene without tolerances.
 void check_tolerances(const Scene& scene);
 

@@ -35,7 +35,8 @@ TEST(Plots, AnHqCurveIsDrawnAndItsScriptDrawsItAgain) {
   const ScratchFolder folder;
   const auto picture = folder.path() / "it's.png"; // a name that needs care in scripts
   const std::array<HqPoints, 2> sets = {{{"measured", head, error}, {"none", {}, {}}}};
-  ASSERT_TRUE(plot_hq_curve(picture, "a title", {"line", head, flow, error, "band"}, sets));
+  const std::array<HqLine, 2> lines = {{{"line", head, flow, error, "band"}, {"other", head, error, {}, ""}}};
+  ASSERT_TRUE(plot_hq_curves(picture, "a title", lines, sets));
   EXPECT_EQ(png_size(picture), (std::array<int, 2>{1000, 700}));
   EXPECT_NE(text_of(folder.path() / "it's.dat").find("\n3.2 40\n"), std::string::npos);
   EXPECT_NE(text_of(folder.path() / "it's.dat").find("\n3.3 40\n"), std::string::npos); // edge of the band

@@ -1,0 +1,61 @@
+#include "training/calibration/posterior.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+
+namespace undula::training {
+namespace {
+
+/// Change of every flow (row) per standard deviation of every input (column).
+Eigen::MatrixXd effects(const UncertaintyBand& band) {
+  const auto flows = static_cast<Eigen::Index>(band.half_width.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(flows, static_cast<Eigen::Index>(band.inputs.size()));
+  for (Eigen::Index i = 0; i < all.cols(); ++i)
+    for (Eigen::Index k = 0; k < flows; ++k) {
+      const double change =
+          effect_of_tolerance(band.inputs[static_cast<std::size_t>(i)], static_cast<std::size_t>(k));
+      if (std::isfinite(change)) all(k, i) = change / deviations_of_95_percent;
+    }
+  return all;
+}
+
+} // namespace
+
+Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd& residual,
+                            const Eigen::VectorXd& deviation, const UncertaintyBand& predicted) {
+  const Eigen::MatrixXd seen = deviation.cwiseInverse().asDiagonal() * effects(given);
+  const Eigen::Index inputs = seen.cols();
+  const Eigen::VectorXd left = residual.cwiseQuotient(deviation);
+  const Eigen::MatrixXd precision = Eigen::MatrixXd::Identity(inputs, inputs) + seen.transpose() * seen;
+  const Eigen::MatrixXd covariance = precision.llt().solve(Eigen::MatrixXd::Identity(inputs, inputs));
+  const Eigen::VectorXd mean = covariance * (seen.transpose() * left);
+
+  Posterior posterior;
+  posterior.flows = static_cast<int>(residual.size());
+  posterior.misfit = left.norm() / std::sqrt(static_cast<double>(residual.size()));
+  posterior.correlation.resize(inputs, inputs);
+  for (Eigen::Index i = 0; i < inputs; ++i) {
+    const InputEffect& input = given.inputs[static_cast<std::size_t>(i)];
+    const double variance = covariance(i, i);
+    // Without the own tolerance the precision of this input is less by 1.
+    const double by_data = 1 / variance - 1;
+    constexpr double rounding = 1e-12;
+    posterior.inputs.push_back({input.key, input.value, input.tolerance,
+                                mean[i] * input.tolerance / deviations_of_95_percent,
+                                std::sqrt(variance) * input.tolerance,
+                                by_data > rounding ? input.tolerance / std::sqrt(by_data)
+                                                   : std::numeric_limits<double>::infinity()});
+    for (Eigen::Index j = 0; j < inputs; ++j)
+      posterior.correlation(i, j) = covariance(i, j) / std::sqrt(variance * covariance(j, j));
+  }
+  const Eigen::MatrixXd ahead = effects(predicted);
+  for (Eigen::Index k = 0; k < ahead.rows(); ++k) {
+    const Eigen::VectorXd effect = ahead.row(k).transpose();
+    posterior.half_width.push_back(deviations_of_95_percent * std::sqrt(effect.dot(covariance * effect)));
+    posterior.shift.push_back(effect.dot(mean));
+  }
+  return posterior;
+}
+
+} // namespace undula::training

@@ -1,0 +1,45 @@
+// What measured curves add to the tolerances of a scene: a linear update of independent normal inputs.
+//
+// Inputs z = (value - stated) / deviation with the tolerances of the scene are N(0, 1) before the data. With
+// the effects A of a deviation on the measured flows, in deviations of the samples, and r the residuals in
+// the same,
+//   covariance of z = (1 + A^T A)^-1,   mean of z = covariance A^T r
+// (Tarantola 2005, section 3.2). Exact where the flows are linear in the inputs.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "training/calibration/uncertainty.hpp"
+
+namespace undula::training {
+
+/// Half width of the interval that holds a normal number with 95 % probability, in standard deviations.
+inline constexpr double deviations_of_95_percent = 1.959964;
+
+/// An input, the data given; unit of the key.
+struct PosteriorInput {
+  std::string key;
+  double value = 0, tolerance = 0; ///< before, as in the scene
+  double shift = 0;                ///< by which the data would move the value
+  double tolerance_given = 0;      ///< after: half width of the 95 % interval
+  /// Half width of the profile likelihood's: what the data and the tolerances of the others tell without the
+  /// own one. Infinite where they tell nothing.
+  double tolerance_by_data = 0;
+};
+
+struct Posterior {
+  std::vector<PosteriorInput> inputs;
+  Eigen::MatrixXd correlation;    ///< of the inputs
+  std::vector<double> half_width; ///< of the curve's 95 % interval at every predicted flow, l/min
+  std::vector<double> shift;      ///< by which the data would move these flows, l/min
+  double misfit = 0;              ///< root mean square of the residuals, in deviations
+  int flows = 0;                  ///< that were given
+};
+
+/// Tolerances propagated to the `given` flows, and to those to predict. `residual`: measured - computed of
+/// the given; `deviation`: standard deviations of the samples. Sides that could not be computed count as
+/// propagate_tolerances says; an input without any at some flow has no effect there.
+Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd& residual,
+                            const Eigen::VectorXd& deviation, const UncertaintyBand& predicted);
+
+} // namespace undula::training
