@@ -29,6 +29,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/scene/operating_point.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
@@ -39,6 +40,7 @@ namespace undula::apps {
 namespace {
 
 constexpr int default_points = 12, heads_per_given_curve = 8;
+constexpr double part_for_slopes = 0.2; // of tolerances, which may be wide where data narrow them
 
 struct HqCommandOptions {
   std::string file;
@@ -52,6 +54,7 @@ struct HqCommandOptions {
   std::string picture;
   bool band = false;
   std::vector<std::string> given; ///< measured curves that narrow the band
+  int draws = 0;                  ///< with them: computed at random inputs, to try the linear law
   bool json = false;
   std::vector<std::string> overrides;
   std::vector<std::string> petsc;
@@ -113,17 +116,16 @@ std::vector<double> flows_with_targets(const Scene& moved, std::span<const Targe
 /// The bands of curves that differ by their voltage. Curves of thin gaps need one rank each, so that every
 /// rank computes its own; those of finite elements take all ranks one after the other.
 std::vector<CurveBand> bands_of_curves(std::span<const Scene> scenes,
-                                       std::span<const std::vector<CurvePoint>> curves,
-                                       std::span<const TargetCurve> given, MPI_Comm comm) {
+                                       std::span<const std::vector<CurvePoint>> curves, GivenFlows& given,
+                                       MPI_Comm comm) {
   std::vector<double> heads;
   for (const CurvePoint& point : curves.front()) {
     heads.push_back(point.head_mmHg);
   }
   const bool alone = scenes.front().space == Space::thin_gap;
   const MPI_Comm curve_comm = alone ? MPI_COMM_SELF : comm;
-  std::vector<double> nominal = given.empty()
-                                    ? std::vector<double>{}
-                                    : flows_with_targets(scenes.front(), given, {}, heads, curve_comm);
+  const bool has_given = given.measured.size() > 0;
+  std::vector<double> nominal = flows_with_targets(scenes.front(), given.targets, {}, heads, curve_comm);
   const std::size_t given_flows = nominal.size();
   for (const auto& curve : curves) {
     for (const CurvePoint& point : curve) {
@@ -132,19 +134,56 @@ std::vector<CurveBand> bands_of_curves(std::span<const Scene> scenes,
   }
   const auto band = propagate_tolerances(
       scenes.front(), nominal,
-      [&](const Scene& moved) { return flows_with_targets(moved, given, scenes, heads, curve_comm); },
-      alone ? comm : MPI_COMM_SELF);
+      [&](const Scene& moved) { return flows_with_targets(moved, given.targets, scenes, heads, curve_comm); },
+      alone ? comm : MPI_COMM_SELF, has_given ? part_for_slopes : 1.0);
+  given.band = part_of_band(band, 0, given_flows);
+  given.computed = Eigen::Map<const Eigen::VectorXd>(nominal.data(), static_cast<Eigen::Index>(given_flows));
   std::vector<CurveBand> bands;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     const auto curve = part_of_band(band, given_flows + k * heads.size(), heads.size());
-    bands.push_back(given.empty() ? CurveBand{curve, std::nullopt, 0}
-                                  : narrowed_band(part_of_band(band, 0, given_flows), nominal, given, curve));
+    bands.push_back(has_given ? narrowed_band(given, curve) : CurveBand{curve, std::nullopt, 0, {}});
   }
   return bands;
 }
 
+/// Curves at random inputs that the data allow, in the place of the linear law.
+std::string draw_curves(std::span<const Scene> scenes, std::span<const std::vector<CurvePoint>> curves,
+                        const GivenFlows& given, int count, MPI_Comm comm, std::span<CurveBand> bands) {
+  std::vector<double> heads;
+  for (const CurvePoint& point : curves.front()) {
+    heads.push_back(point.head_mmHg);
+  }
+  const auto moved = [&](const Eigen::VectorXd& values) {
+    Scene scene = scenes.front();
+    for (std::size_t i = 0; i < given.band.inputs.size(); ++i) {
+      scene = with_value(scene, given.band.inputs[i].key, values[static_cast<Eigen::Index>(i)]);
+    }
+    return scene;
+  };
+  const FlowsOfInputs flows = [&](const Eigen::VectorXd& values) -> std::optional<Eigen::VectorXd> {
+    try {
+      const auto all = flows_with_targets(moved(values), given.targets, {}, heads, comm);
+      const Eigen::VectorXd result = Eigen::Map<const Eigen::VectorXd>(all.data(), given.measured.size());
+      return result.allFinite() ? std::optional(result) : std::nullopt;
+    } catch (const InputError&) { // beyond what a key allows
+      return std::nullopt;
+    }
+  };
+  const auto ensemble = draw_inputs(given.band, given.measured, given.deviation, flows, count, 1);
+  if (ensemble.values.rows() < 2) {
+    throw NumericsError("no flow can be had where the draws lead", std::to_string(count) + " draws",
+                        "narrower tolerances, or no --draws");
+  }
+  Eigen::MatrixXd drawn(ensemble.values.rows(), static_cast<Eigen::Index>(curves.size() * heads.size()));
+  for (Eigen::Index row = 0; row < drawn.rows(); ++row) {
+    const auto all = flows_with_targets(moved(ensemble.values.row(row)), {}, scenes, heads, comm);
+    drawn.row(row) = Eigen::Map<const Eigen::VectorXd>(all.data(), drawn.cols());
+  }
+  return replace_by_draws(ensemble, drawn, curves, bands);
+}
+
 /// A table per curve, what the tolerances do, and what the data tell of the inputs.
-void print_tables(std::span<const CurveReport> reports) {
+void print_tables(std::span<const CurveReport> reports, const std::string& drawn) {
   for (const CurveReport& report : reports) {
     if (reports.size() > 1) {
       std::cout << (&report == reports.data() ? "" : "\n") << setting_text(report.scene.operating_point)
@@ -158,6 +197,7 @@ void print_tables(std::span<const CurveReport> reports) {
   if (reports.front().band != nullptr && reports.front().band->posterior) {
     std::cout << "\n" << posterior_table(*reports.front().band);
   }
+  std::cout << drawn;
 }
 
 /// Everything asked for, read and checked.
@@ -227,6 +267,10 @@ Question read_question(const HqCommandOptions& options) {
     throw InputError("measured curves narrow a band, and none is asked for", "--given without --band",
                      "--band --given FILE", "--given");
   }
+  if (options.draws > 0 && options.given.empty()) {
+    throw InputError("draws are of inputs that data narrow, and none are given", "--draws without --given",
+                     "--band --given FILE --draws N", "--draws");
+  }
   question.heads = options.heads.empty()
                        ? even_heads(units::pressure_to_mmHg(scene.training.head_low),
                                     units::pressure_to_mmHg(scene.training.head_high), default_points)
@@ -276,9 +320,14 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
   }
 
   // 3. What the tolerances of the inputs do to it; what stands beside it.
+  GivenFlows given = given_flows(question.given);
   std::vector<CurveBand> bands;
   if (options.band) {
-    bands = bands_of_curves(question.scenes, curves, question.given, comm);
+    bands = bands_of_curves(question.scenes, curves, given, comm);
+  }
+  std::string drawn;
+  if (options.draws > 0) {
+    drawn = draw_curves(question.scenes, curves, given, options.draws, comm, bands);
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   std::unique_ptr<Level> other_level;
@@ -317,7 +366,7 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
     if (options.json) {
       std::cout << curves_json(reports);
     } else {
-      print_tables(reports);
+      print_tables(reports, drawn);
     }
     if (!options.picture.empty()) {
       plot_curve_reports(options.picture, reports);
@@ -361,6 +410,10 @@ void add_hq_command(CLI::App& app) {
       ->add_option("--given", options->given,
                    "with --band: measured points that narrow it (CSV), may be repeated; docs/calibration.md")
       ->allow_extra_args(false);
+  command
+      ->add_option("--draws", options->draws,
+                   "with --given: so many curves at random inputs, to see whether the band holds them")
+      ->check(CLI::Range(1, 100000));
   command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--set", options->overrides,

@@ -46,30 +46,63 @@ double CurveBand::half_width_of_samples(std::size_t head) const {
   return std::hypot(half_width(head), deviations_of_95_percent * scatter_l_per_min);
 }
 
-CurveBand narrowed_band(const UncertaintyBand& given_flows, std::span<const double> nominal,
-                        std::span<const TargetCurve> given, const UncertaintyBand& curve) {
-  std::vector<double> residual, deviation;
+GivenFlows given_flows(std::span<const TargetCurve> targets) {
+  std::vector<double> measured, deviation;
+  for (const TargetCurve& target : targets) {
+    measured.insert(measured.end(), target.flow_l_per_min.begin(), target.flow_l_per_min.end());
+    deviation.insert(deviation.end(), target.flow_l_per_min.size(),
+                     std::hypot(target.scatter_l_per_min, flow_noise_l_per_min));
+  }
+  const auto size = static_cast<Eigen::Index>(measured.size());
+  return {targets,
+          Eigen::Map<const Eigen::VectorXd>(measured.data(), size),
+          Eigen::Map<const Eigen::VectorXd>(deviation.data(), size),
+          {},
+          {}};
+}
+
+CurveBand narrowed_band(const GivenFlows& given, const UncertaintyBand& curve) {
+  if (!given.computed.allFinite()) {
+    throw NumericsError("a flow that the band has to be narrowed by cannot be computed",
+                        "a head of the given curves", "finer steps in time, or data at other heads");
+  }
   CurveBand narrowed;
   narrowed.tolerances = curve;
-  for (const TargetCurve& target : given) {
-    for (std::size_t i = 0; i < target.head_mmHg.size(); ++i) {
-      const double computed = nominal[residual.size()];
-      if (!std::isfinite(computed)) {
-        throw NumericsError("a flow that the band has to be narrowed by cannot be computed",
-                            target.name + ", " + plain_number(target.head_mmHg[i]) + " mmHg",
-                            "finer steps in time, or data at other heads");
-      }
-      residual.push_back(target.flow_l_per_min[i] - computed);
-      deviation.push_back(std::hypot(target.scatter_l_per_min, flow_noise_l_per_min));
-    }
+  for (const TargetCurve& target : given.targets) {
     narrowed.scatter_l_per_min = std::max(narrowed.scatter_l_per_min, target.scatter_l_per_min);
   }
-  const auto size = static_cast<Eigen::Index>(residual.size());
-  narrowed.posterior =
-      condition_on_data(given_flows, Eigen::Map<const Eigen::VectorXd>(residual.data(), size),
-                        Eigen::Map<const Eigen::VectorXd>(deviation.data(), size), curve);
+  narrowed.posterior = condition_on_data(given.band, given.measured - given.computed, given.deviation, curve);
   warn_of_shift(*narrowed.posterior);
   return narrowed;
+}
+
+std::string replace_by_draws(const PosteriorEnsemble& ensemble, const Eigen::MatrixXd& flows,
+                             std::span<const std::vector<CurvePoint>> curves, std::span<CurveBand> bands) {
+  Eigen::Index column = 0;
+  int inside = 0, all = 0;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    std::vector<double> half_width;
+    for (std::size_t head = 0; head < curves[k].size(); ++head, ++column) {
+      double square = 0;
+      int counted = 0;
+      for (const double flow : flows.col(column)) {
+        const double distance = flow - curves[k][head].flow_l_per_min;
+        if (!std::isfinite(distance)) {
+          continue; // a head that fails
+        }
+        square += distance * distance;
+        inside += std::abs(distance) <= bands[k].half_width(head) ? 1 : 0;
+        ++counted;
+      }
+      all += counted;
+      half_width.push_back(deviations_of_95_percent * std::sqrt(square / std::max(counted, 1)));
+    }
+    bands[k].half_width_of_draws = half_width;
+  }
+  return std::to_string(ensemble.values.rows()) + " draws (" + std::to_string(ensemble.refused) +
+         " led where no flow can be had), misfit " + decimals(ensemble.misfit.mean(), 2) +
+         "; the linear band holds " + decimals(100.0 * inside / std::max(all, 1), 0) +
+         " % of their flows. The bands above are theirs\n";
 }
 
 std::string posterior_table(const CurveBand& band) {

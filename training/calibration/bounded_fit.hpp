@@ -19,7 +19,7 @@ struct FitOptions {
   double last_step = 1e-2;       ///< at which the search ends
   double difference_step = 0.05; ///< of derivatives, to both sides
   double least_step = 2e-3;      ///< of Gauss and Newton, at which the fit ends
-  int most_steps = 5;            ///< of Gauss and Newton
+  int most_steps = 10;           ///< of Gauss and Newton
   int most_points_per_key = 60;  ///< of the search, times the number of directions
 };
 

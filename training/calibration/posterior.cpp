@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 namespace undula::training {
 namespace {
@@ -56,6 +58,55 @@ Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd&
     posterior.shift.push_back(effect.dot(mean));
   }
   return posterior;
+}
+
+PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorXd& measured,
+                              const Eigen::VectorXd& deviation, const FlowsOfInputs& flows, int count,
+                              unsigned seed) {
+  constexpr int steps = 3;
+  const Eigen::MatrixXd seen = deviation.cwiseInverse().asDiagonal() * effects(given);
+  const Eigen::Index inputs = seen.cols();
+  const Eigen::LLT<Eigen::MatrixXd> precision(Eigen::MatrixXd::Identity(inputs, inputs) +
+                                              seen.transpose() * seen);
+  Eigen::VectorXd stated(inputs), scale(inputs); // value and deviation of every input
+  for (Eigen::Index i = 0; i < inputs; ++i) {
+    const InputEffect& input = given.inputs[static_cast<std::size_t>(i)];
+    stated[i] = input.value;
+    scale[i] = input.tolerance / deviations_of_95_percent;
+  }
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const auto draw = [&](Eigen::Index size) {
+    Eigen::VectorXd numbers(size);
+    for (double& number : numbers) number = normal(random);
+    return numbers;
+  };
+
+  PosteriorEnsemble ensemble;
+  std::vector<Eigen::VectorXd> kept;
+  std::vector<double> misfits;
+  for (int k = 0; k < count; ++k) {
+    const Eigen::VectorXd prior = draw(inputs);
+    const Eigen::VectorXd target = measured + deviation.cwiseProduct(draw(measured.size()));
+    Eigen::VectorXd unit = Eigen::VectorXd::Zero(inputs);
+    std::optional<Eigen::VectorXd> here = flows(stated);
+    for (int step = 0; step < steps && here; ++step) {
+      unit += precision.solve(prior - unit + seen.transpose() * (target - *here).cwiseQuotient(deviation));
+      here = flows(stated + scale.cwiseProduct(unit));
+    }
+    if (!here) {
+      ++ensemble.refused;
+      continue;
+    }
+    kept.emplace_back(stated + scale.cwiseProduct(unit));
+    misfits.push_back((measured - *here).cwiseQuotient(deviation).norm() /
+                      std::sqrt(static_cast<double>(measured.size())));
+  }
+  ensemble.values.resize(static_cast<Eigen::Index>(kept.size()), inputs);
+  for (std::size_t k = 0; k < kept.size(); ++k) ensemble.values.row(static_cast<Eigen::Index>(k)) = kept[k];
+  ensemble.misfit =
+      Eigen::Map<const Eigen::VectorXd>(misfits.data(), static_cast<Eigen::Index>(misfits.size()));
+  return ensemble;
 }
 
 } // namespace undula::training

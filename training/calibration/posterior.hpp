@@ -8,6 +8,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <optional>
 
 #include "training/calibration/uncertainty.hpp"
 
@@ -29,6 +31,7 @@ struct PosteriorInput {
 
 struct Posterior {
   std::vector<PosteriorInput> inputs;
+  Eigen::MatrixXd covariance;     ///< of the inputs, in their stated deviations
   Eigen::MatrixXd correlation;    ///< of the inputs
   std::vector<double> half_width; ///< of the curve's 95 % interval at every predicted flow, l/min
   std::vector<double> shift;      ///< by which the data would move these flows, l/min
@@ -41,5 +44,22 @@ struct Posterior {
 /// propagate_tolerances says; an input without any at some flow has no effect there.
 Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd& residual,
                             const Eigen::VectorXd& deviation, const UncertaintyBand& predicted);
+
+/// Given flows at values of the inputs, in their units; nothing where they cannot be had.
+using FlowsOfInputs = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& values)>;
+
+struct PosteriorEnsemble {
+  Eigen::MatrixXd values; ///< draws x inputs, in their units
+  Eigen::VectorXd misfit; ///< of each: root mean square of the residuals, in deviations
+  int refused = 0;        ///< draws that led where no flow can be had
+};
+
+/// Draws where the flows are not linear: randomised maximum likelihood (Oliver, He & Reynolds 1996). Every
+/// draw moves the stated values and the measured flows by their own deviations and is fitted to them, by
+/// three steps of Gauss and Newton with the slopes of `given`. For linear flows the draws are those of
+/// condition_on_data. `measured` in l/min; the same draws for the same seed.
+PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorXd& measured,
+                              const Eigen::VectorXd& deviation, const FlowsOfInputs& flows, int count,
+                              unsigned seed);
 
 } // namespace undula::training

@@ -67,7 +67,7 @@ void check_tolerances(const Scene& scene) {
 }
 
 UncertaintyBand propagate_tolerances(const Scene& scene, std::span<const double> nominal,
-                                     const FlowsOfScene& flows, MPI_Comm comm) {
+                                     const FlowsOfScene& flows, MPI_Comm comm, double part) {
   check_tolerances(scene);
   UncertaintyBand band;
   int rank = 0, ranks = 1;
@@ -85,7 +85,7 @@ UncertaintyBand propagate_tolerances(const Scene& scene, std::span<const double>
     input.value = surface_value(scene, input.key);
     for (const bool upwards : {true, false}) {
       std::vector<double>& side = upwards ? input.up : input.down;
-      const double value = input.value + (upwards ? input.tolerance : -input.tolerance);
+      const double value = input.value + (upwards ? part : -part) * input.tolerance;
       const auto there = moved(scene, input.key, value, upwards ? "+" : "-", input.note);
       if (!there) {
         side.assign(nominal.size(), unknown);
@@ -99,8 +99,10 @@ UncertaintyBand propagate_tolerances(const Scene& scene, std::span<const double>
   }
 
   // 2. Every rank gets all of them.
-  for (std::vector<double>* side : computed)
+  for (std::vector<double>* side : computed) {
     MPI_Allreduce(MPI_IN_PLACE, side->data(), static_cast<int>(side->size()), MPI_DOUBLE, MPI_SUM, comm);
+    for (double& flow_change : *side) flow_change /= part;
+  }
   for (InputEffect& input : band.inputs)
     if (input.note.empty() &&
         !(std::ranges::all_of(input.up, is_known) && std::ranges::all_of(input.down, is_known)))

@@ -43,13 +43,14 @@ void check_tolerances(const Scene& scene);
 /// Propagates Scene::tolerances to first order, inputs independent of each other: the half width is the root
 /// sum of squares of (up - down) / 2 over the inputs, or of up (down) alone where the other side is out
 /// of range or fails; `low` and `high` that of the changes to their side. `nominal`: flows of the
-/// scene itself, from the same function. Throws InputError, with what to write, for a scene without
-/// tolerances.
+/// scene itself, from the same function. With `part` < 1 the inputs are moved by that part of their
+/// tolerances and the changes scaled to the whole: slopes, where the tolerances are too wide for a line.
+/// Throws InputError, with what to write, for a scene without tolerances.
 ///
 /// The computations are dealt out over the ranks of `comm`, each to one rank: `flows` must not communicate
 /// over `comm`. Where `flows` itself is collective over some ranks, `comm` is MPI_COMM_SELF on all of them.
 /// Collective over `comm`; complete on every rank.
 UncertaintyBand propagate_tolerances(const Scene& scene, std::span<const double> nominal,
-                                     const FlowsOfScene& flows, MPI_Comm comm);
+                                     const FlowsOfScene& flows, MPI_Comm comm, double part = 1);
 
 } // namespace undula::training

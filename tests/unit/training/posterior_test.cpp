@@ -170,5 +170,50 @@ TEST(Posterior, AProfileRisesByTheSquareOfTheDeviations) {
   EXPECT_NEAR(profile[2].misfit - profile[1].misfit, rise, 1e-3);
 }
 
+// Draws of linear flows have the mean and the covariance of the law, whatever the number of steps.
+TEST(Posterior, DrawsAreThoseOfTheLaw) {
+  const LinearModel model = given();
+  const Eigen::Vector3d residual(0.3, -0.1, 0.2);
+  const Eigen::VectorXd measured = model.slope * model.value + residual;
+  const FlowsOfInputs flows = [&](const Eigen::VectorXd& values) {
+    return Eigen::VectorXd(model.slope * values);
+  };
+  const int count = 20000;
+  const auto ensemble = draw_inputs(model.band(), measured, deviations_of_flow, flows, count, 7);
+  ASSERT_EQ(ensemble.values.rows(), count);
+  EXPECT_EQ(ensemble.refused, 0);
+  const Posterior posterior =
+      condition_on_data(model.band(), residual, deviations_of_flow, predicted().band());
+  const Eigen::VectorXd mean = ensemble.values.colwise().mean();
+  const Eigen::MatrixXd centred = ensemble.values.rowwise() - mean.transpose();
+  const Eigen::MatrixXd covariance = centred.transpose() * centred / (count - 1);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const PosteriorInput& input = posterior.inputs[static_cast<std::size_t>(i)];
+    const double deviation = input.tolerance_given / deviations_of_95_percent;
+    EXPECT_NEAR(mean[i], input.value + input.shift, 0.03 * deviation);
+    EXPECT_NEAR(std::sqrt(covariance(i, i)), deviation, 0.02 * deviation);
+  }
+  EXPECT_NEAR(covariance(0, 1) / std::sqrt(covariance(0, 0) * covariance(1, 1)), posterior.correlation(0, 1),
+              0.02);
+  EXPECT_EQ(draw_inputs(model.band(), measured, deviations_of_flow, flows, 5, 7).values,
+            ensemble.values.topRows(5));
+}
+
+// Where the flow is curved, a draw ends at the optimum of its own moved problem, not at that of the slopes.
+TEST(Posterior, DrawsFollowAFlowThatIsCurved) {
+  LinearModel line;
+  line.slope = Eigen::MatrixXd::Constant(1, 1, 1.0);
+  line.value = Eigen::VectorXd::Constant(1, 1.0);
+  line.deviation = Eigen::VectorXd::Constant(1, 1.0);
+  const FlowsOfInputs square = [](const Eigen::VectorXd& x) -> std::optional<Eigen::VectorXd> {
+    if (x[0] < 0) return std::nullopt;
+    return Eigen::VectorXd((x.array().square() + 1) / 2); // slope 1 at 1
+  };
+  const Eigen::VectorXd exact = Eigen::VectorXd::Constant(1, 1e-4);
+  const auto ensemble = draw_inputs(line.band(), Eigen::VectorXd::Constant(1, 1.2), exact, square, 50, 3);
+  for (const double value : ensemble.values.col(0)) EXPECT_NEAR(value, std::sqrt(1.4), 5e-3);
+  EXPECT_GT(ensemble.values.rows(), 40);
+}
+
 } // namespace
 } // namespace undula::training
