@@ -61,15 +61,20 @@ struct HqCommandOptions {
 };
 
 /// The level beside the curve: at the frequency and stroke that its holder makes. Beside one that a voltage
-/// drives, a scene keeps its own drive.
-LevelSource read_beside(const HqCommandOptions& options, const Scene& scene) {
+/// drives, a scene keeps its own drive; one that a stroke drives takes the nominal stroke of the curve's
+/// data.
+LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, const MeasuredCurve* data) {
   const auto& point = scene.operating_point;
   if (point.drive == Drive::voltage) {
     if (!is_scene(options.beside)) {
       throw InputError("a reduced model of this version is driven by a stroke", options.beside,
                        "--beside with a scene (.toml), where a voltage drives the curve", "--beside");
     }
-    return read_level_source(options.beside, {}, point.frequency, {});
+    auto beside = read_level_source(options.beside, {}, point.frequency, {});
+    if (beside.scene.operating_point.drive == Drive::stroke && data != nullptr && data->stroke_mm) {
+      return read_level_source(options.beside, {}, point.frequency, data->stroke_mm);
+    }
+    return beside;
   }
   const double stroke =
       units::length_to_mm(point.stroke) * (is_scene(options.beside) ? 1 : point.stroke_scale);
@@ -294,8 +299,8 @@ Question read_question(const HqCommandOptions& options) {
         kept_runs(*question.source.model, scene.operating_point.frequency, *options.stroke_mm));
   }
   if (!options.beside.empty()) {
-    for (const Scene& driven : question.scenes) {
-      question.other.push_back(read_beside(options, driven));
+    for (std::size_t k = 0; k < question.scenes.size(); ++k) {
+      question.other.push_back(read_beside(options, question.scenes[k], question.beside_curve[k]));
     }
   }
   return question;

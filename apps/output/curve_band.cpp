@@ -100,9 +100,8 @@ std::string replace_by_draws(const PosteriorEnsemble& ensemble, const Eigen::Mat
     bands[k].half_width_of_draws = half_width;
   }
   return std::to_string(ensemble.values.rows()) + " draws (" + std::to_string(ensemble.refused) +
-         " led where no flow can be had), misfit " + decimals(ensemble.misfit.mean(), 2) +
-         "; the linear band holds " + decimals(100.0 * inside / std::max(all, 1), 0) +
-         " % of their flows. The bands above are theirs\n";
+         " without an end), misfit " + decimals(ensemble.misfit.mean(), 2) + "; the linear band holds " +
+         decimals(100.0 * inside / std::max(all, 1), 0) + " % of their flows. The bands above are theirs\n";
 }
 
 std::string posterior_table(const CurveBand& band) {

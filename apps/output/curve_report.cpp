@@ -327,7 +327,7 @@ std::string band_label(const CurveReport& report) {
   if (report.band == nullptr) {
     return "error estimate";
   }
-  return report.band->posterior ? "95 % of measured samples" : "by tolerances of the inputs (95 %)";
+  return report.band->posterior ? "95 % of samples" : "by tolerances of the inputs (95 %)";
 }
 
 } // namespace
@@ -350,7 +350,7 @@ bool plot_curve_reports(const std::filesystem::path& picture, std::span<const Cu
     lines.push_back(
         {several ? setting : report.level, curve.head, curve.flow, curve.error, band_label(report) + at});
     if (!curve.beside_flow.empty()) {
-      point_sets.push_back({report.beside_level + at, curve.beside_head, curve.beside_flow, true, line});
+      point_sets.push_back({report.beside_level, curve.beside_head, curve.beside_flow, true, line});
     }
     for (const RecordedCurve& runs : report.recorded) {
       if (same_setting(runs.frequency_Hz, report.scene.operating_point.frequency) &&

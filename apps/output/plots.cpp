@@ -120,8 +120,10 @@ bool plot_hq_curves(const std::filesystem::path& picture, const std::string& tit
                                 points.label));
     }
   }
-  const std::string commands = axes(title, "flow (l/min)", "head (mmHg)") +
-                               "set grid\nset key bottom left\n" + plot_command("plot", items);
+  const std::string commands =
+      axes(title, "flow (l/min)", "head (mmHg)") +
+      (lines.size() > 1 ? "set grid\nset key top right\n" : "set grid\nset key bottom left\n") +
+      plot_command("plot", items);
   return draw_picture(picture, blocks.text(), commands);
 }
 

@@ -22,6 +22,48 @@ Eigen::MatrixXd effects(const UncertaintyBand& band) {
   return all;
 }
 
+struct FittedDraw {
+  Eigen::VectorXd unit, flows; ///< inputs in deviations from their stated values; flows there
+};
+
+/// Least of |unit - prior|^2 + |(target - flows(unit)) / deviation|^2 from unit = 0: steps of Gauss and
+/// Newton, halved where they lead upwards, with `slopes` (in deviations) that follow the flows by Broyden's
+/// update. Nothing where no flow can be had, or the steps do not end.
+std::optional<FittedDraw> fit_draw(const Eigen::VectorXd& prior, const Eigen::VectorXd& target,
+                                   const Eigen::VectorXd& deviation, Eigen::MatrixXd slopes,
+                                   const Eigen::VectorXd& flows_at_zero, const FlowsOfInputs& flows) {
+  constexpr int most_steps = 8, halvings = 3;
+  constexpr double short_step = 0.1, small_gain = 0.02; // in deviations of the answer, of the sum of squares
+  const Eigen::Index inputs = slopes.cols();
+  FittedDraw draw{Eigen::VectorXd::Zero(inputs), flows_at_zero};
+  const auto sum_of_squares = [&](const Eigen::VectorXd& unit, const Eigen::VectorXd& at) {
+    return (unit - prior).squaredNorm() + (target - at).cwiseQuotient(deviation).squaredNorm();
+  };
+  double sum = sum_of_squares(draw.unit, draw.flows);
+  for (int step = 0; step < most_steps; ++step) {
+    const Eigen::LLT<Eigen::MatrixXd> precision(Eigen::MatrixXd::Identity(inputs, inputs) +
+                                                slopes.transpose() * slopes);
+    Eigen::VectorXd change = precision.solve(
+        prior - draw.unit + slopes.transpose() * (target - draw.flows).cwiseQuotient(deviation));
+    if ((precision.matrixU() * change).norm() < short_step) return draw;
+    double gain = 0;
+    for (int halving = 0; halving <= halvings && gain <= 0; ++halving, change /= 2) {
+      const auto there = flows(draw.unit + change);
+      if (!there) continue;
+      const Eigen::VectorXd missed = (*there - draw.flows).cwiseQuotient(deviation) - slopes * change;
+      slopes += missed * change.transpose() / change.squaredNorm();
+      const double next = sum_of_squares(draw.unit + change, *there);
+      if (next >= sum) continue;
+      gain = sum - next;
+      sum = next;
+      draw.unit += change;
+      draw.flows = *there;
+    }
+    if (gain <= small_gain) return gain > 0 ? std::optional(draw) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
 } // namespace
 
 Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd& residual,
@@ -63,11 +105,8 @@ Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd&
 PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorXd& measured,
                               const Eigen::VectorXd& deviation, const FlowsOfInputs& flows, int count,
                               unsigned seed) {
-  constexpr int steps = 3;
   const Eigen::MatrixXd seen = deviation.cwiseInverse().asDiagonal() * effects(given);
   const Eigen::Index inputs = seen.cols();
-  const Eigen::LLT<Eigen::MatrixXd> precision(Eigen::MatrixXd::Identity(inputs, inputs) +
-                                              seen.transpose() * seen);
   Eigen::VectorXd stated(inputs), scale(inputs); // value and deviation of every input
   for (Eigen::Index i = 0; i < inputs; ++i) {
     const InputEffect& input = given.inputs[static_cast<std::size_t>(i)];
@@ -85,21 +124,22 @@ PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorX
   PosteriorEnsemble ensemble;
   std::vector<Eigen::VectorXd> kept;
   std::vector<double> misfits;
+  const std::optional<Eigen::VectorXd> at_stated = flows(stated);
   for (int k = 0; k < count; ++k) {
     const Eigen::VectorXd prior = draw(inputs);
     const Eigen::VectorXd target = measured + deviation.cwiseProduct(draw(measured.size()));
-    Eigen::VectorXd unit = Eigen::VectorXd::Zero(inputs);
-    std::optional<Eigen::VectorXd> here = flows(stated);
-    for (int step = 0; step < steps && here; ++step) {
-      unit += precision.solve(prior - unit + seen.transpose() * (target - *here).cwiseQuotient(deviation));
-      here = flows(stated + scale.cwiseProduct(unit));
-    }
-    if (!here) {
+    const auto answer = at_stated
+                            ? fit_draw(prior, target, deviation, seen, *at_stated,
+                                       [&](const Eigen::VectorXd& unit) -> std::optional<Eigen::VectorXd> {
+                                         return flows(stated + scale.cwiseProduct(unit));
+                                       })
+                            : std::nullopt;
+    if (!answer) {
       ++ensemble.refused;
       continue;
     }
-    kept.emplace_back(stated + scale.cwiseProduct(unit));
-    misfits.push_back((measured - *here).cwiseQuotient(deviation).norm() /
+    kept.emplace_back(stated + scale.cwiseProduct(answer->unit));
+    misfits.push_back((measured - answer->flows).cwiseQuotient(deviation).norm() /
                       std::sqrt(static_cast<double>(measured.size())));
   }
   ensemble.values.resize(static_cast<Eigen::Index>(kept.size()), inputs);

@@ -51,12 +51,12 @@ using FlowsOfInputs = std::function<std::optional<Eigen::VectorXd>(const Eigen::
 struct PosteriorEnsemble {
   Eigen::MatrixXd values; ///< draws x inputs, in their units
   Eigen::VectorXd misfit; ///< of each: root mean square of the residuals, in deviations
-  int refused = 0;        ///< draws that led where no flow can be had
+  int refused = 0;        ///< draws without an end: no flow can be had there, or the fit does not settle
 };
 
 /// Draws where the flows are not linear: randomised maximum likelihood (Oliver, He & Reynolds 1996). Every
 /// draw moves the stated values and the measured flows by their own deviations and is fitted to them, by
-/// three steps of Gauss and Newton with the slopes of `given`. For linear flows the draws are those of
+/// steps of Gauss and Newton from the slopes of `given`. For linear flows the draws are those of
 /// condition_on_data. `measured` in l/min; the same draws for the same seed.
 PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorXd& measured,
                               const Eigen::VectorXd& deviation, const FlowsOfInputs& flows, int count,
