@@ -28,7 +28,7 @@ struct FittedDraw {
 
 /// Least of |unit - prior|^2 + |(target - flows(unit)) / deviation|^2 from unit = 0: steps of Gauss and
 /// Newton, halved where they lead upwards, with `slopes` (in deviations) that follow the flows by Broyden's
-/// update. Nothing where no flow can be had, or the steps do not end.
+/// update. Nothing where no flow can be had, or the sum stays far above what is probable.
 std::optional<FittedDraw> fit_draw(const Eigen::VectorXd& prior, const Eigen::VectorXd& target,
                                    const Eigen::VectorXd& deviation, Eigen::MatrixXd slopes,
                                    const Eigen::VectorXd& flows_at_zero, const FlowsOfInputs& flows) {
@@ -59,9 +59,11 @@ std::optional<FittedDraw> fit_draw(const Eigen::VectorXd& prior, const Eigen::Ve
       draw.unit += change;
       draw.flows = *there;
     }
-    if (gain <= small_gain) return gain > 0 ? std::optional(draw) : std::nullopt;
+    if (gain <= small_gain) break;
   }
-  return std::nullopt;
+  // At its minimum the sum is that of as many squares of normal numbers as there are flows.
+  const auto size = static_cast<double>(target.size());
+  return sum <= size + 4 * std::sqrt(2 * size) ? std::optional(draw) : std::nullopt;
 }
 
 } // namespace
