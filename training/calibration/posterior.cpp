@@ -59,7 +59,8 @@ std::optional<FittedDraw> fit_draw(const Eigen::VectorXd& prior, const Eigen::Ve
       draw.unit += change;
       draw.flows = *there;
     }
-    if (gain <= small_gain) break;
+    if (gain <= 0) break;
+    if (gain <= small_gain) return draw;
   }
   // At its minimum the sum is that of as many squares of normal numbers as there are flows.
   const auto size = static_cast<double>(target.size());
