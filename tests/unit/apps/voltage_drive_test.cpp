@@ -78,8 +78,8 @@ TEST(VoltageDriveCommands, SeveralCurvesInOneCallAndTheirBandsNarrowedByData) {
   const ScratchFolder folder;
   const std::string at_40 = root + "/data/measured/corwave_120hz_0.53mm.csv",
                     at_45 = root + "/data/measured/corwave_120hz_0.63mm.csv";
-  const Words ask = with({"hq", scene, "--voltage", "40,45", "--head", "50", "--data", at_45, "--data",
-                          at_40, "--plot", "two.png", "--json", "--band"},
+  const Words ask = with({"hq", scene, "--voltage", "40,45", "--head", "50", "--data", at_45, "--data", at_40,
+                          "--plot", "two.png", "--json", "--band"},
                          {"thin_gap.cells=24", "time.steps_per_period=48"});
   const auto curves_of = [&](const Words& more) {
     Words words = ask;
