@@ -1,6 +1,5 @@
 #include "apps/commands/curve_bands.hpp"
 
-#include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "training/calibration/scene_flows.hpp"
 
@@ -9,13 +8,16 @@ namespace {
 
 constexpr double part_for_slopes = 0.2; // of tolerances, which may be wide where data narrow them
 
-/// Flows of a scene at the settings of all targets, one after the other, and on every curve behind them.
+/// Flows of a scene at the settings of all targets, one after the other, and on every curve behind them, on a
+/// level prepared once.
 std::vector<double> flows_with_targets(const Scene& moved, std::span<const TargetCurve> targets,
                                        std::span<const Scene> scenes, std::span<const double> heads,
                                        MPI_Comm comm) {
+  PhaseTimer timer;
+  const auto level = prepare_level(moved, comm, timer);
   std::vector<double> all;
   const auto add = [&](const Scene& scene, std::span<const double> at) {
-    const auto flows = scene_flows(scene, at, comm).flow_l_per_min;
+    const auto flows = scene_flows(*level, scene, at, comm).flow_l_per_min;
     all.insert(all.end(), flows.begin(), flows.end());
   };
   for (const TargetCurve& target : targets) {
@@ -41,7 +43,10 @@ std::vector<CurveBand> bands_of_curves(std::span<const Scene> scenes,
   const bool alone = scenes.front().space == Space::thin_gap;
   const MPI_Comm curve_comm = alone ? MPI_COMM_SELF : comm;
   const bool has_given = given.measured.size() > 0;
-  std::vector<double> nominal = flows_with_targets(scenes.front(), given.targets, {}, heads, curve_comm);
+  std::vector<double> nominal;
+  if (has_given) {
+    nominal = flows_with_targets(scenes.front(), given.targets, {}, heads, curve_comm);
+  }
   const std::size_t given_flows = nominal.size();
   for (const auto& curve : curves) {
     for (const CurvePoint& point : curve) {
@@ -68,22 +73,11 @@ std::string draw_curves(std::span<const Scene> scenes, std::span<const std::vect
   for (const CurvePoint& point : curves.front()) {
     heads.push_back(point.head_mmHg);
   }
-  const auto moved = [&](const Eigen::VectorXd& values) {
-    Scene scene = scenes.front();
-    for (std::size_t i = 0; i < given.band.inputs.size(); ++i) {
-      scene = with_value(scene, given.band.inputs[i].key, values[static_cast<Eigen::Index>(i)]);
-    }
-    return scene;
-  };
-  const FlowsOfInputs flows = [&](const Eigen::VectorXd& values) -> std::optional<Eigen::VectorXd> {
-    try {
-      const auto all = flows_with_targets(moved(values), given.targets, {}, heads, comm);
-      const Eigen::VectorXd result = Eigen::Map<const Eigen::VectorXd>(all.data(), given.measured.size());
-      return result.allFinite() ? std::optional(result) : std::nullopt;
-    } catch (const InputError&) { // beyond what a key allows
-      return std::nullopt;
-    }
-  };
+  std::vector<FreeKey> keys;
+  for (const InputEffect& input : given.band.inputs) {
+    keys.push_back({input.key});
+  }
+  const auto flows = flows_of_scene(scenes.front(), keys, given.targets, comm, {});
   const auto ensemble = draw_inputs(given.band, given.measured, given.deviation, flows, count, 1);
   if (ensemble.values.rows() < 2) {
     throw NumericsError("no flow can be had where the draws lead", std::to_string(count) + " draws",
@@ -91,7 +85,8 @@ std::string draw_curves(std::span<const Scene> scenes, std::span<const std::vect
   }
   Eigen::MatrixXd drawn(ensemble.values.rows(), static_cast<Eigen::Index>(curves.size() * heads.size()));
   for (Eigen::Index row = 0; row < drawn.rows(); ++row) {
-    const auto all = flows_with_targets(moved(ensemble.values.row(row)), {}, scenes, heads, comm);
+    const auto all = flows_with_targets(with_values(scenes.front(), keys, ensemble.values.row(row)), {},
+                                        scenes, heads, comm);
     drawn.row(row) = Eigen::Map<const Eigen::VectorXd>(all.data(), drawn.cols());
   }
   return replace_by_draws(ensemble, drawn, curves, bands);

@@ -29,6 +29,7 @@
 #include "apps/output/text_table.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/scene/operating_point.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
@@ -161,13 +162,12 @@ Question read_question(const HqCommandOptions& options) {
       options.voltages.empty()
           ? std::vector<double>{}
           : parse_numbers(options.voltages, {"voltages", "V", "40,45 or 36:48:4", "--voltage"});
-  for (std::size_t k = 0; k < std::max<std::size_t>(voltages.size(), 1); ++k) {
-    auto source = read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm,
-                                    voltages.empty() ? std::nullopt : std::optional(voltages[k]));
-    question.scenes.push_back(source.scene);
-    if (k == 0) {
-      question.source = std::move(source);
-    }
+  question.source =
+      read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm,
+                        voltages.empty() ? std::nullopt : std::optional(voltages.front()));
+  question.scenes = {question.source.scene};
+  for (std::size_t k = 1; k < voltages.size(); ++k) {
+    question.scenes.push_back(with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
   }
   const Scene& scene = question.scenes.front();
   if (options.band && question.source.model) {

@@ -47,18 +47,7 @@ double CurveBand::half_width_of_samples(std::size_t head) const {
 }
 
 GivenFlows given_flows(std::span<const TargetCurve> targets) {
-  std::vector<double> measured, deviation;
-  for (const TargetCurve& target : targets) {
-    measured.insert(measured.end(), target.flow_l_per_min.begin(), target.flow_l_per_min.end());
-    deviation.insert(deviation.end(), target.flow_l_per_min.size(),
-                     std::hypot(target.scatter_l_per_min, flow_noise_l_per_min));
-  }
-  const auto size = static_cast<Eigen::Index>(measured.size());
-  return {targets,
-          Eigen::Map<const Eigen::VectorXd>(measured.data(), size),
-          Eigen::Map<const Eigen::VectorXd>(deviation.data(), size),
-          {},
-          {}};
+  return {targets, measured_flows(targets), deviations(targets), {}, {}};
 }
 
 CurveBand narrowed_band(const GivenFlows& given, const UncertaintyBand& curve) {

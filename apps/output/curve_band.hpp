@@ -18,10 +18,9 @@ namespace undula::apps {
 /// Entries per head of the curve.
 struct CurveBand {
   UncertaintyBand tolerances;
-  std::optional<Posterior> posterior; ///< where measured curves are given
-  double scatter_l_per_min = 0;       ///< standard deviation of a measured sample, of the given curves
-  std::vector<double>
-      half_width_of_draws; ///< 95 % of drawn curves about the scene's own; empty: none are drawn
+  std::optional<Posterior> posterior;      ///< where measured curves are given
+  double scatter_l_per_min = 0;            ///< standard deviation of a measured sample, of the given curves
+  std::vector<double> half_width_of_draws; ///< 95 % of drawn curves; empty: none are drawn
 
   /// Half width of the curve's 95 % interval, l/min.
   double half_width(std::size_t head) const {

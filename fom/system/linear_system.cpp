@@ -126,33 +126,34 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   }
   // Every entry once: PETSc sorts and adds up what it is given, which costs more than assembling it.
   std::vector<PetscInt> rows(columns_.size()), columns(columns_.size());
+  const int first = disc.joined.empty() ? -1 : disc.joined.front();
   std::vector<int> stands_for(size); // by unknown: itself, or the first of the joined
   std::iota(stands_for.begin(), stands_for.end(), 0);
-  for (const int unknown : disc.joined) stands_for[unknown] = disc.joined.front();
-  const auto is_joined = [&](int unknown) {
-    return !disc.joined.empty() && stands_for[unknown] == disc.joined.front();
-  };
+  for (const int unknown : disc.joined) stands_for[unknown] = first;
   for (int row = 0; row < size; ++row)
     for (int k = row_begin_[row]; k < row_begin_[row + 1]; ++k) {
       // Of constrained rows the owner's diagonal alone stays; the others get a negative index, which PETSc
       // skips.
-      const bool kept = !disc.is_constrained[row] || is_joined(row) ||
-                        (columns_[k] == row && operators.ownership.owner[row] == rank);
+      const bool by_identity = disc.is_constrained[row] && stands_for[row] != first;
+      const bool kept = !by_identity || (columns_[k] == row && operators.ownership.owner[row] == rank);
       rows[k] = kept ? index[stands_for[row]] : -1;
       columns[k] = index[stands_for[columns_[k]]];
-      if (kept && disc.is_constrained[row] && !is_joined(row)) identity_places_.push_back(k);
+      if (kept && by_identity) identity_places_.push_back(k);
     }
   for (const int unknown : disc.joined) {
     if (operators.ownership.owner[unknown] != rank) continue;
-    const int first = disc.joined.front();
     const auto add = [&](int column, double value) {
       rows.push_back(index[unknown]);
       columns.push_back(index[column]);
       holder_entries_.push_back(value);
     };
-    if (unknown != first) add(unknown, 1.0);
-    if (unknown == first) holder_place_ = static_cast<int>(holder_entries_.size());
-    add(first, unknown == first ? 0.0 : -1.0);
+    if (unknown == first) {
+      holder_place_ = static_cast<int>(holder_entries_.size());
+      add(first, 0.0);
+    } else {
+      add(unknown, 1.0);
+      add(first, -1.0);
+    }
   }
 
   check_petsc(MatCreate(operators.comm, matrix_.out()), "creating the system matrix");

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <unsupported/Eigen/AutoDiff>
 
+#include "fom/actuator/holder_terms.hpp"
 #include "fom/thin_gap/contact_law.hpp"
 #include "fom/thin_gap/step_terms.hpp"
 
@@ -273,15 +274,15 @@ void assemble_plate(const ThinGapStep& step, const Eigen::VectorXd& x, Eigen::Ve
 
 /// What the actuator makes of the holder at velocity v: mass, resistance and voltage.
 void add_actuator(const ThinGapStep& step, double v, HolderEquation& holder) {
-  const ActuatorSettings& actuator = step.scene->actuator;
   const int last = step.at.nodes - 1;
-  const double w = (step.dt * v + step.d_history[step.at.deflection(last)]) / step.alpha[0];
-  const double acceleration = time_derivative(step, v, step.x_history[step.at.deflection_rate(last)]);
-  const HolderResistance resistance = holder_resistance(actuator, w, v);
-  holder.residual = holder.force + actuator.moving_mass * acceleration + resistance.force -
-                    driving_force(actuator, step.voltage);
-  holder.by_velocity = actuator.moving_mass * step.alpha[0] / step.dt + resistance.by_velocity +
-                       resistance.by_displacement * step.dt / step.alpha[0];
+  HolderMotion motion;
+  motion.rate = step.alpha[0] / step.dt;
+  motion.velocity = v;
+  motion.displacement = (step.dt * v + step.d_history[step.at.deflection(last)]) / step.alpha[0];
+  motion.acceleration = time_derivative(step, v, step.x_history[step.at.deflection_rate(last)]);
+  const HolderTerms terms = holder_terms(step.scene->actuator, step.voltage, motion);
+  holder.residual = holder.force + terms.force;
+  holder.by_velocity = terms.by_velocity;
 }
 
 /// Replaces the plate's equations in the holder by its motion, and sums up what they were.

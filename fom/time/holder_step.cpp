@@ -1,21 +1,23 @@
 #include "fom/time/holder_step.hpp"
 
+#include "fom/actuator/holder_terms.hpp"
+
 namespace undula::fom {
 
 HolderStep holder_step(const DrivenHolder& holder, const std::array<double, 3>& alpha, double dt, double t,
                        const State& state, int unknown, double about) {
-  const auto& actuator = holder.actuator;
-  const double per_velocity = dt / alpha[0]; // of displacement at the end, cm per cm/s
-  const double displacement =
-      per_velocity * about - (alpha[1] * state.d[0][unknown] + alpha[2] * state.d[1][unknown]) / alpha[0];
-  const auto resistance = holder_resistance(actuator, displacement, about);
-  const double resisting = resistance.by_velocity + resistance.by_displacement * per_velocity;
-  const double momentum = actuator.moving_mass / dt; // per velocity
+  const auto history = [&](const auto& levels) {
+    return alpha[1] * levels[0][unknown] + alpha[2] * levels[1][unknown];
+  };
+  HolderMotion motion;
+  motion.rate = alpha[0] / dt;
+  motion.velocity = about;
+  motion.displacement = (dt * about - history(state.d)) / alpha[0];
+  motion.acceleration = (alpha[0] * about + history(state.x)) / dt;
+  const HolderTerms terms = holder_terms(holder.actuator, holder.voltage(t), motion);
   HolderStep step;
-  step.by_velocity = momentum * alpha[0] + resisting;
-  step.force = driving_force(actuator, holder.voltage(t)) -
-               momentum * (alpha[1] * state.x[0][unknown] + alpha[2] * state.x[1][unknown]) -
-               (resistance.force - resisting * about);
+  step.by_velocity = terms.by_velocity;
+  step.force = terms.by_velocity * about - terms.force;
   return step;
 }
 

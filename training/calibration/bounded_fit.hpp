@@ -40,8 +40,8 @@ struct BoundedFit {
 ///    length changes does not mislead it. A point without residuals counts as worse than the worst so far: it
 ///    is never accepted, and the region of trust shrinks away from it.
 /// 2. Steps of Gauss and Newton within the bounds, halved up to four times where they do not lower the sum,
-/// as
-///    long as they do: along a valley the sum hardly tells where its lowest point is, but the residuals do.
+///    as long as they do: along a valley the sum hardly tells where its lowest point is, but the residuals
+///    do.
 ///
 /// Derivatives are central differences; towards a bound, or a point without residuals, those of the other
 /// side alone, with steps halved up to twice where both are missing. Each point is computed once. Finds a

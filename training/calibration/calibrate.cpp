@@ -9,8 +9,8 @@
 #include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
-#include "training/calibration/posterior.hpp"
 #include "training/calibration/scene_flows.hpp"
+#include "training/calibration/uncertainty.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
@@ -32,6 +32,12 @@ std::string rounded(double value) {
   return text.data();
 }
 
+double root_mean_square(const Eigen::VectorXd& values) {
+  return values.norm() / std::sqrt(static_cast<double>(values.size()));
+}
+
+} // namespace
+
 Eigen::VectorXd measured_flows(std::span<const TargetCurve> targets) {
   std::vector<double> all;
   for (const TargetCurve& target : targets)
@@ -39,7 +45,6 @@ Eigen::VectorXd measured_flows(std::span<const TargetCurve> targets) {
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-/// Standard deviation of every residual: scatter of the data and noise of the flows.
 Eigen::VectorXd deviations(std::span<const TargetCurve> targets) {
   std::vector<double> all;
   for (const TargetCurve& target : targets)
@@ -47,12 +52,6 @@ Eigen::VectorXd deviations(std::span<const TargetCurve> targets) {
                std::hypot(target.scatter_l_per_min, flow_noise_l_per_min));
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
-
-double root_mean_square(const Eigen::VectorXd& values) {
-  return values.norm() / std::sqrt(static_cast<double>(values.size()));
-}
-
-} // namespace
 
 void check_free_keys(const Scene& scene, std::span<const FreeKey> keys) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -180,12 +179,11 @@ Calibration calibrate(const FlowsOfValues& flows, std::span<const FreeKey> keys,
   FitOptions steps = options;
   steps.search = options.search && !held; // the tolerances leave no valley to search
   BoundedFit fit = fit_within_bounds(residuals, low, high, start, steps);
-  const Eigen::Index flows_in_all = measured.size();
   const double misfit =
       held ? fit.residuals.squaredNorm() : fit.residuals.cwiseQuotient(deviation).squaredNorm();
   if (held) { // of the flows alone, l/min
-    fit.residuals = fit.residuals.head(flows_in_all).cwiseProduct(deviation).eval();
-    fit.jacobian = (deviation.asDiagonal() * fit.jacobian.topRows(flows_in_all)).eval();
+    fit.residuals = fit.residuals.head(measured.size()).cwiseProduct(deviation).eval();
+    fit.jacobian = (deviation.asDiagonal() * fit.jacobian.topRows(measured.size())).eval();
   }
 
   Calibration result;

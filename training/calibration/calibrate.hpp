@@ -65,6 +65,12 @@ struct Calibration {
 /// shipped scenes leaves as much.
 inline constexpr double flow_noise_l_per_min = 1e-3;
 
+/// Flows of all targets, one after the other, l/min.
+Eigen::VectorXd measured_flows(std::span<const TargetCurve> targets);
+
+/// Standard deviation of every one of them: scatter of the data and noise of the flows.
+Eigen::VectorXd deviations(std::span<const TargetCurve> targets);
+
 /// Checks free keys against the scene and the targets. Throws InputError for an unknown or repeated key, a
 /// range upside down or out of the key's own, a value of the scene outside its range, and for frequency,
 /// stroke or head, which the data state.

@@ -31,7 +31,7 @@ struct FittedDraw {
 /// update. Nothing where no flow can be had, or the sum stays far above what is probable.
 std::optional<FittedDraw> fit_draw(const Eigen::VectorXd& prior, const Eigen::VectorXd& target,
                                    const Eigen::VectorXd& deviation, Eigen::MatrixXd slopes,
-                                   const Eigen::VectorXd& flows_at_zero, const FlowsOfInputs& flows) {
+                                   const Eigen::VectorXd& flows_at_zero, const FlowsOfValues& flows) {
   constexpr int most_steps = 8, halvings = 3;
   constexpr double short_step = 0.1, small_gain = 0.02; // in deviations of the answer, of the sum of squares
   const Eigen::Index inputs = slopes.cols();
@@ -106,7 +106,7 @@ Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd&
 }
 
 PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorXd& measured,
-                              const Eigen::VectorXd& deviation, const FlowsOfInputs& flows, int count,
+                              const Eigen::VectorXd& deviation, const FlowsOfValues& flows, int count,
                               unsigned seed) {
   const Eigen::MatrixXd seen = deviation.cwiseInverse().asDiagonal() * effects(given);
   const Eigen::Index inputs = seen.cols();

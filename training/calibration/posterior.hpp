@@ -8,15 +8,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
-#include <optional>
 
+#include "training/calibration/calibrate.hpp"
 #include "training/calibration/uncertainty.hpp"
 
 namespace undula::training {
-
-/// Half width of the interval that holds a normal number with 95 % probability, in standard deviations.
-inline constexpr double deviations_of_95_percent = 1.959964;
 
 /// An input, the data given; unit of the key.
 struct PosteriorInput {
@@ -31,7 +27,6 @@ struct PosteriorInput {
 
 struct Posterior {
   std::vector<PosteriorInput> inputs;
-  Eigen::MatrixXd covariance;     ///< of the inputs, in their stated deviations
   Eigen::MatrixXd correlation;    ///< of the inputs
   std::vector<double> half_width; ///< of the curve's 95 % interval at every predicted flow, l/min
   std::vector<double> shift;      ///< by which the data would move these flows, l/min
@@ -45,9 +40,6 @@ struct Posterior {
 Posterior condition_on_data(const UncertaintyBand& given, const Eigen::VectorXd& residual,
                             const Eigen::VectorXd& deviation, const UncertaintyBand& predicted);
 
-/// Given flows at values of the inputs, in their units; nothing where they cannot be had.
-using FlowsOfInputs = std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& values)>;
-
 struct PosteriorEnsemble {
   Eigen::MatrixXd values; ///< draws x inputs, in their units
   Eigen::VectorXd misfit; ///< of each: root mean square of the residuals, in deviations
@@ -57,9 +49,10 @@ struct PosteriorEnsemble {
 /// Draws where the flows are not linear: randomised maximum likelihood (Oliver, He & Reynolds 1996). Every
 /// draw moves the stated values and the measured flows by their own deviations and is fitted to them, by
 /// steps of Gauss and Newton from the slopes of `given`. For linear flows the draws are those of
-/// condition_on_data. `measured` in l/min; the same draws for the same seed.
+/// condition_on_data. `measured` in l/min, `flows` the given ones at values of the inputs; the same draws for
+/// the same seed.
 PosteriorEnsemble draw_inputs(const UncertaintyBand& given, const Eigen::VectorXd& measured,
-                              const Eigen::VectorXd& deviation, const FlowsOfInputs& flows, int count,
+                              const Eigen::VectorXd& deviation, const FlowsOfValues& flows, int count,
                               unsigned seed);
 
 } // namespace undula::training

@@ -16,6 +16,9 @@ namespace undula::training {
 /// Flows (l/min) of a scene at fixed heads; NaN where the numerics failed.
 using FlowsOfScene = std::function<std::vector<double>(const Scene& scene)>;
 
+/// Half width of the interval that holds a normal number with 95 % probability, in standard deviations.
+inline constexpr double deviations_of_95_percent = 1.959964;
+
 /// One input with a tolerance, and what its ends change.
 struct InputEffect {
   std::string key;

@@ -175,7 +175,7 @@ TEST(Posterior, DrawsAreThoseOfTheLaw) {
   const LinearModel model = given();
   const Eigen::Vector3d residual(0.3, -0.1, 0.2);
   const Eigen::VectorXd measured = model.slope * model.value + residual;
-  const FlowsOfInputs flows = [&](const Eigen::VectorXd& values) {
+  const FlowsOfValues flows = [&](const Eigen::VectorXd& values) {
     return Eigen::VectorXd(model.slope * values);
   };
   const int count = 20000;
@@ -205,7 +205,7 @@ TEST(Posterior, DrawsFollowAFlowThatIsCurved) {
   line.slope = Eigen::MatrixXd::Constant(1, 1, 1.0);
   line.value = Eigen::VectorXd::Constant(1, 1.0);
   line.deviation = Eigen::VectorXd::Constant(1, 1.0);
-  const FlowsOfInputs square = [](const Eigen::VectorXd& x) -> std::optional<Eigen::VectorXd> {
+  const FlowsOfValues square = [](const Eigen::VectorXd& x) -> std::optional<Eigen::VectorXd> {
     if (x[0] < 0) return std::nullopt;
     return Eigen::VectorXd((x.array().square() + 1) / 2); // slope 1 at 1
   };
