@@ -35,6 +35,8 @@ constexpr Column columns[] = {{"error (l/min)", &CurvePoint::error_l_per_min, 3,
 /// Of a holder that is free to move.
 constexpr Column drive_columns[] = {
     {"stroke (mm)", &CurvePoint::stroke_mm, 4, "failed"},
+    {"at 2 f (mm)", &CurvePoint::stroke_2f_mm, 4, "failed"},
+    {"at 3 f (mm)", &CurvePoint::stroke_3f_mm, 4, "failed"},
     {"phase (degrees)", &CurvePoint::phase_degrees, 1, "failed"},
     {"offset (mm)", &CurvePoint::offset_mm, 4, "failed"},
     {"reaction in phase (N/mm)", &CurvePoint::reaction_in_phase_N_per_mm, 2, "failed"},
@@ -189,6 +191,8 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
   entry["hydraulic_power_mW"] = finite_or_null(point.power_mW);
   entry["holder_power_mW"] = finite_or_null(point.holder_power_mW);
   entry["holder"] = {{"stroke_mm", finite_or_null(point.stroke_mm)},
+                     {"stroke_2f_mm", finite_or_null(point.stroke_2f_mm)},
+                     {"stroke_3f_mm", finite_or_null(point.stroke_3f_mm)},
                      {"phase_degrees", finite_or_null(point.phase_degrees)},
                      {"offset_mm", finite_or_null(point.offset_mm)},
                      {"reaction_in_phase_N_per_mm", finite_or_null(point.reaction_in_phase_N_per_mm)},

@@ -21,8 +21,9 @@ struct CurvePoint {
   double power_mW = unknown;               ///< hydraulic: head times flow
   double holder_power_mW = unknown;        ///< put in by the actuator
   double stroke_mm = unknown;              ///< amplitude of the holder's fundamental
-  double phase_degrees = unknown;          ///< of the holder behind the drive
-  double offset_mm = unknown;              ///< mean displacement of the holder
+  double stroke_2f_mm = unknown, stroke_3f_mm = unknown; ///< of its parts at twice and three times f
+  double phase_degrees = unknown;                        ///< of the holder behind the drive
+  double offset_mm = unknown;                            ///< mean displacement of the holder
   /// Force of the holder on membrane and fluid per stroke, fundamentals: in phase with the displacement and
   /// a quarter of a period ahead of it.
   double reaction_in_phase_N_per_mm = unknown, reaction_quadrature_N_per_mm = unknown;

@@ -12,8 +12,8 @@
 namespace undula::fom {
 namespace {
 
-/// Steps are counted from the first of this march. The means of a signal times 2 sin and 2 cos of the drive's
-/// phase are the coefficients of its fundamental.
+/// Steps are counted from the first of this march. The means of a signal times 2 sin and 2 cos of n times the
+/// drive's phase are the coefficients of its part at n times the frequency.
 void append(TimeSeries& series, const Observation& seen, double frequency) {
   series.steps.push_back(static_cast<int>(series.rows()) + 1);
   const double phase = 2 * std::numbers::pi * frequency * seen.time;
@@ -23,20 +23,22 @@ void append(TimeSeries& series, const Observation& seen, double frequency) {
   for (const double value :
        {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
         units::power_to_mW(seen.hydraulic_power), units::power_to_mW(seen.energy.holder), seen.speed_max,
-        units::length_to_mm(seen.clearance_min), place, place * sine, place * cosine, force * sine,
-        force * cosine, units::power_to_mW(seen.holder.actuator_power),
-        units::power_to_mW(seen.holder.electrical_power)})
+        units::length_to_mm(seen.clearance_min), place, place * sine, place * cosine,
+        place * 2 * std::sin(2 * phase), place * 2 * std::cos(2 * phase), place * 2 * std::sin(3 * phase),
+        place * 2 * std::cos(3 * phase), force * sine, force * cosine,
+        units::power_to_mW(seen.holder.actuator_power), units::power_to_mW(seen.holder.electrical_power)})
     series.values.push_back(value);
 }
 
 } // namespace
 
 std::vector<std::string> cycle_columns() {
-  return {"outflow_l_per_min",   "inflow_l_per_min",      "hydraulic_power_mW",
-          "holder_power_mW",     "speed_max_cm_per_s",    "clearance_min_mm",
-          "holder_mm",           "holder_sine_mm",        "holder_cosine_mm",
-          "holder_force_sine_N", "holder_force_cosine_N", "actuator_power_mW",
-          "electrical_power_mW"};
+  return {"outflow_l_per_min",   "inflow_l_per_min",    "hydraulic_power_mW",
+          "holder_power_mW",     "speed_max_cm_per_s",  "clearance_min_mm",
+          "holder_mm",           "holder_sine_mm",      "holder_cosine_mm",
+          "holder_sine_2f_mm",   "holder_cosine_2f_mm", "holder_sine_3f_mm",
+          "holder_cosine_3f_mm", "holder_force_sine_N", "holder_force_cosine_N",
+          "actuator_power_mW",   "electrical_power_mW"};
 }
 
 PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State& state,

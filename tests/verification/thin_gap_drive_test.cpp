@@ -123,6 +123,32 @@ TEST(VoltageDrive, PowersBalance) {
   EXPECT_GT(actuator, 1e7); // more than a watt
 }
 
+// Offset, fundamental and two harmonics are all of the motion; stops bring the third harmonic.
+TEST(VoltageDrive, HarmonicsMakeUpTheMotion) {
+  const auto compare = [](const Settings& more) {
+    const auto result = run(pump_by_voltage(), more);
+    double mean = 0, square = 0;
+    for (std::size_t i = result.steps.size() - 72; i < result.steps.size(); ++i) {
+      const double place = 10 * result.steps[i].holder.displacement; // mm
+      mean += place / 72;
+      square += place * place / 72;
+    }
+    const CurvePoint& point = result.point;
+    const double variance = square - mean * mean;
+    const double told = 0.5 * (std::pow(point.stroke_mm, 2) + std::pow(point.stroke_2f_mm, 2) +
+                               std::pow(point.stroke_3f_mm, 2));
+    std::printf("stroke %.4f mm, at 2 f %.4f, at 3 f %.4f: %.4f %% of the motion is beyond them\n",
+                point.stroke_mm, point.stroke_2f_mm, point.stroke_3f_mm, 100 * (1 - told / variance));
+    EXPECT_NEAR(told / variance, 1, 1e-3);
+    EXPECT_NEAR(point.offset_mm, mean, 5e-4); // it is a mean of the last periods
+    return point;
+  };
+  const CurvePoint free = compare({}),
+                   stopped = compare({"actuator.stop_mm=0.3", "actuator.stop_N_per_mm=200"});
+  EXPECT_GT(free.stroke_2f_mm, 1e-4);
+  EXPECT_GT(stopped.stroke_3f_mm / stopped.stroke_mm, 3 * free.stroke_3f_mm / free.stroke_mm);
+}
+
 // The reaction of membrane and fluid, as it is measured, and the law of the oscillator give the stroke.
 TEST(VoltageDrive, StrokeIsThatOfTheMeasuredReaction) {
   const auto result = run(pump_by_voltage());
