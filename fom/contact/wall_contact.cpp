@@ -105,6 +105,23 @@ double smallest_gap(const WallContact<dim>& contact, const Eigen::VectorXd& plac
   return smallest;
 }
 
+template <int dim>
+double film_difference(const WallContact<dim>& contact, const Eigen::VectorXd& first,
+                       const Eigen::VectorXd& second) {
+  double largest = 0;
+  for (const auto& node : contact.skin) {
+    const auto gap = [&](const Eigen::VectorXd& placement) {
+      return gap_to_walls<dim>(contact, node.at_rest + placement.template segment<dim>(node.unknown))
+          .distance;
+    };
+    const double a = gap(first), b = gap(second), smaller = std::min(a, b);
+    if (smaller >= contact.settings.film) continue;
+    if (smaller <= 0) return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, std::abs(a - b) / smaller);
+  }
+  return largest;
+}
+
 namespace {
 
 /// Area vectors of the skin's nodes, out of the solids where they are placed: Simpson's rule on every edge.
@@ -197,6 +214,7 @@ ContactBalance contact_balance(const WallContact<dim>& contact, const Eigen::Vec
   return balance;
 }
 
+template double film_difference(const WallContact<2>&, const Eigen::VectorXd&, const Eigen::VectorXd&);
 template void keep_off_walls(const WallContact<2>&, const Eigen::VectorXd&, Eigen::VectorXd&);
 template ContactBalance contact_balance(const WallContact<2>&, const Eigen::VectorXd&,
                                         const Eigen::VectorXd&);

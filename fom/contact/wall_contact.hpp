@@ -72,6 +72,12 @@ template <int dim>
 ContactForce contact_force(const WallContact<dim>& contact, const Discretisation<dim>& disc,
                            const Eigen::VectorXd& placement);
 
+/// Largest difference of the gaps of two placements (both solids' unknowns), relative to the smaller one,
+/// over the nodes that are in the film in either.
+template <int dim>
+double film_difference(const WallContact<dim>& contact, const Eigen::VectorXd& first,
+                       const Eigen::VectorXd& second);
+
 /// Draws back, towards where they are `now`, those nodes of an expected `placement` (both solids' unknowns)
 /// that would lose more than half of what is left of their film.
 template <int dim>

@@ -23,6 +23,7 @@ MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& ope
   if (coupling_ == Coupling::mapped) {
     const auto scope = timer_.measure("map");
     extension_ = prepare_extension(disc_);
+    unfolding_ = prepare_unfolding(disc_);
   }
   restore(state);
   if (state.x[0].size() != disc_.unknowns())
@@ -115,6 +116,23 @@ void MovingStepper<dim>::place_cut(const Eigen::VectorXd& placement, const State
 }
 
 template <int dim>
+std::vector<Point<dim>> MovingStepper<dim>::unfolded(const std::vector<Point<dim>>& target,
+                                                     const Eigen::VectorXd& last, const State& before) {
+  std::vector<std::vector<Point<dim>>> starts(1, std::vector<Point<dim>>(target.size()));
+  for (std::size_t node = 0; node < target.size(); ++node)
+    starts[0][node] = last.segment<dim>(static_cast<Eigen::Index>(node) * dim);
+  if (before.placement.size() > 0) { // the correction of the step before
+    const auto extended = extend(*extension_, before.placement);
+    auto moved = target;
+    for (std::size_t node = 0; node < target.size(); ++node) moved[node] += starts[0][node] - extended[node];
+    starts.insert(starts.begin(), std::move(moved));
+  }
+  auto map = unfold<dim>(*unfolding_, target, starts);
+  report_.unfolding_iterations = std::max(report_.unfolding_iterations, map.iterations);
+  return std::move(map.displacement);
+}
+
+template <int dim>
 void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, const State& before,
                                    State& state) {
   const auto scope = timer_.measure("map");
@@ -122,13 +140,13 @@ void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, 
   const double ratio = before.last_step > 0 ? dt / before.last_step : 1.0;
   const auto alpha = bdf_coefficients(settings_.scheme, before.step + 1, ratio);
   auto& map = disc_.map;
-  map.displacement = extend(*extension_, placement);
-  map.velocity.resize(map.displacement.size());
-  const auto length = static_cast<Eigen::Index>(map.displacement.size()) * dim;
+  const auto length = static_cast<Eigen::Index>(disc_.fluid_nodes.dof_point.size()) * dim;
   const auto level_before = [&](int level) -> Eigen::VectorXd {
     return before.map[level].size() > 0 ? before.map[level] : Eigen::VectorXd::Zero(length);
   };
   const Eigen::VectorXd last = level_before(0), older = level_before(1);
+  map.displacement = unfolded(extend(*extension_, placement), last, before);
+  map.velocity.resize(map.displacement.size());
   state.map[1] = last;
   state.map[0].resize(length);
   for (std::size_t node = 0; node < map.displacement.size(); ++node) {
@@ -149,13 +167,27 @@ void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, 
 }
 
 template <int dim>
+bool MovingStepper<dim>::settled(const Eigen::VectorXd& placed, const Eigen::VectorXd& computed) const {
+  constexpr double film = 0.2; // a flow through a film feels its height
+  switch (coupling_) {
+    case Coupling::implicit:
+      return (computed - placed).template lpNorm<Eigen::Infinity>() <= settings_.motion.tolerance;
+    case Coupling::mapped:
+      return !contact_ || film_difference(*contact_, placed, computed) <= film;
+    default:
+      return true;
+  }
+}
+
+template <int dim>
 void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
   const State before = state;
   const auto solids = disc_.solid_unknowns();
   Discretisation<dim> origin; // cut and numbering of `before`
   Eigen::VectorXd placement = extrapolated_placement(state, t, dt);
   if (contact_) keep_off_walls<dim>(*contact_, before.d[0].tail(solids), placement);
-  const int turns = coupling_ == Coupling::implicit ? settings_.motion.max_iterations : 1;
+  const bool repeats = coupling_ == Coupling::implicit || (coupling_ == Coupling::mapped && contact_);
+  const int turns = repeats ? settings_.motion.max_iterations : 1;
   double error = 0;
   for (int turn = 1; turn <= turns; ++turn) {
     if (coupling_ == Coupling::mapped)
@@ -167,17 +199,19 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
     state.placement = placement;
     error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();
     report_.iterations = std::max(report_.iterations, turn);
-    if (coupling_ != Coupling::implicit || error <= settings_.motion.tolerance) {
+    if (settled(placement, state.d[0].tail(solids))) {
       report_.placement_error = std::max(report_.placement_error, error);
       return;
     }
     placement = state.d[0].tail(solids);
   }
-  throw NumericsError("cut and solve do not settle",
-                      "t = " + std::to_string(t) + " s, the solids end " + std::to_string(error) +
-                          " cm from where they were placed after " + std::to_string(turns) + " turns",
-                      "a smaller time step, more turns (time.coupling_iterations) or a larger tolerance "
-                      "(time.coupling_tolerance_mm)");
+  throw NumericsError(
+      "placing the solids and solving do not settle",
+      "t = " + std::to_string(t) + " s, the solids end " + std::to_string(error) +
+          " cm from where they were placed after " + std::to_string(turns) + " turns",
+      std::string("a smaller time step, more turns (time.coupling_iterations)") +
+          (coupling_ == Coupling::implicit ? " or a larger tolerance (time.coupling_tolerance_mm)"
+                                           : ", or a thicker film (contact.film_mm)"));
 }
 
 template <int dim>

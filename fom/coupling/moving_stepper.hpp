@@ -3,7 +3,8 @@
 //
 //   explicit  cut anew where the solids are extrapolated to be, fields transferred to the new unknowns
 //   implicit  the same in turns, until the solids end where they were placed
-//   mapped    one cut at rest; the ALE map follows the extrapolated solids
+//   mapped    one cut at rest; the ALE map follows the extrapolated solids, in turns where a film of contact
+//             ends a fifth off the one that was placed
 #pragma once
 
 #include <optional>
@@ -11,6 +12,7 @@
 #include "fom/coupling/field_transfer.hpp"
 #include "fom/coupling/motion_report.hpp"
 #include "fom/mapping/domain_extension.hpp"
+#include "fom/mapping/unfolding.hpp"
 #include "fom/time/time_stepper.hpp"
 
 namespace undula::fom {
@@ -39,6 +41,10 @@ private:
   void place_cut(const Eigen::VectorXd& placement, const State& before, Discretisation<dim>& origin,
                  State& state);
   void place_map(const Eigen::VectorXd& placement, double dt, const State& before, State& state);
+  std::vector<Point<dim>> unfolded(const std::vector<Point<dim>>& target, const Eigen::VectorXd& last,
+                                   const State& before);
+  /// Whether the solids end near enough to where they were placed.
+  bool settled(const Eigen::VectorXd& placed, const Eigen::VectorXd& computed) const;
   void restore(const State& state);
   void solve_placed(const Eigen::VectorXd& placement, double t, double dt, State& state);
 
@@ -50,6 +56,7 @@ private:
   PhaseTimer& timer_;
   std::optional<WallContact<dim>> contact_;
   std::optional<DomainExtension<dim>> extension_; ///< mapped
+  std::optional<Unfolding<dim>> unfolding_;       ///< mapped
   CutOptions cut_options_;
   std::optional<TimeStepper<dim>> stepper_;
   MotionReport report_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fom/mapping/map_penalties.hpp"
+#include "fom/mapping/nodes_at_rest.hpp"
 #include "fom/mapping/skin_elasticity.hpp"
 #include "fom/mapping/weighted_laplace.hpp"
 #include "rom/base/error.hpp"
@@ -10,28 +12,6 @@
 namespace undula::fom {
 
 namespace {
-
-/// Fluid nodes where the component's displacement vanishes.
-template <int dim>
-std::vector<char> nodes_at_rest(const Discretisation<dim>& disc, int component) {
-  using Kind = BoundaryCondition<dim>::Kind;
-  std::vector<char> at_rest(disc.fluid_nodes.dof_point.size(), 0);
-  for (const auto& piece : disc.cut.boundary) {
-    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
-    if (condition.kind == Kind::symmetry && component != 0) continue;
-    const int opposite = disc.cut.facets.facets[piece.facet].local[0];
-    for (int a = 0; a <= dim; ++a)
-      if (a != opposite) at_rest[disc.fluid_nodes.part_dofs[piece.part][a]] = 1;
-  }
-  return at_rest;
-}
-
-/// Rows and columns of nodes at rest replaced by the identity.
-void hold(const std::vector<char>& at_rest, SparseMatrix& matrix) {
-  for (int row = 0; row < matrix.outerSize(); ++row)
-    for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-      if (at_rest[row] || at_rest[entry.col()]) entry.valueRef() = entry.col() == row ? 1.0 : 0.0;
-}
 
 /// Mean thickness of the solids: twice their volume over the area of their skins (plain measures), cm.
 template <int dim>
@@ -44,11 +24,6 @@ double mean_thickness(const Discretisation<dim>& disc) {
       if (facet.cells[1] < 0) skin += facet_measure(body.mesh, facet);
   }
   return skin > 0 ? 2 * volume / skin : 0.0;
-}
-
-/// A trace of a zeroth-order term, for nodes that no skin is connected with.
-void keep_regular(SparseMatrix& matrix) {
-  for (int row = 0; row < matrix.outerSize(); ++row) matrix.coeffRef(row, row) *= 1 + 1e-13;
 }
 
 void expect_factored(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factors) {
@@ -137,7 +112,8 @@ template <int dim>
 DomainExtension<dim> prepare_extension(const Discretisation<dim>& disc, const ExtensionSettings& settings) {
   DomainExtension<dim> extension;
   const auto geometries = part_geometries(disc);
-  auto problem = skin_elasticity<dim>(disc, geometries, settings.smoothing * mean_thickness(disc));
+  auto problem =
+      skin_elasticity<dim>(disc, geometries, settings.smoothing * mean_thickness(disc), map_skin_penalty);
   keep_regular(problem.matrix);
   extension.smooth =
       std::make_unique<typename DomainExtension<dim>::Factors>(Eigen::SparseMatrix<double>(problem.matrix));

@@ -55,13 +55,13 @@ void add_medium(const Discretisation<dim>& disc, std::span<const PartGeometry<di
 
 template <int dim>
 void add_skin(const Discretisation<dim>& disc, std::span<const PartGeometry<dim>> geometries,
-              Triplets& matrix, Triplets& data) {
+              double skin_penalty, Triplets& matrix, Triplets& data) {
   const auto& cut = disc.cut;
   for (const auto& piece : cut.interface) {
     const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
     const auto& solid_nodes = disc.solid_spaces[piece.solid].cell_nodes[piece.solid_cell];
     const auto& geometry = geometries[piece.part];
-    const double penalty = 2 * map_skin_penalty / cell_diameter(cut.mesh, cut.parts[piece.part].cell);
+    const double penalty = 2 * skin_penalty / cell_diameter(cut.mesh, cut.parts[piece.part].cell);
     const auto flux = tractions<dim>(geometry, piece.normal);
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
       const auto& place = cut.interface_quadrature.points[q];
@@ -91,12 +91,13 @@ void add_skin(const Discretisation<dim>& disc, std::span<const PartGeometry<dim>
 
 template <int dim>
 SkinElasticity<dim> skin_elasticity(const Discretisation<dim>& disc,
-                                    std::span<const PartGeometry<dim>> geometries, double smoothing_length) {
+                                    std::span<const PartGeometry<dim>> geometries, double smoothing_length,
+                                    double skin_penalty) {
   Triplets matrix, data;
   constexpr std::size_t per_part = (dim + 1) * (dim + 1) * dim * dim;
   matrix.reserve((disc.cut.parts.size() + 2 * disc.cut.interface.size()) * per_part);
   add_medium<dim>(disc, geometries, smoothing_length, matrix);
-  add_skin<dim>(disc, geometries, matrix, data);
+  add_skin<dim>(disc, geometries, skin_penalty, matrix, data);
   SkinElasticity<dim> problem;
   const int size = static_cast<int>(disc.fluid_nodes.dof_point.size()) * dim;
   problem.matrix = compress(size, matrix);
@@ -105,7 +106,7 @@ SkinElasticity<dim> skin_elasticity(const Discretisation<dim>& disc,
   return problem;
 }
 
-template SkinElasticity<2> skin_elasticity(const Discretisation<2>&, std::span<const PartGeometry<2>>,
+template SkinElasticity<2> skin_elasticity(const Discretisation<2>&, std::span<const PartGeometry<2>>, double,
                                            double);
 
 } // namespace undula::fom

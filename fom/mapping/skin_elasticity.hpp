@@ -17,8 +17,10 @@ struct SkinElasticity {
   SparseMatrix data; ///< fluid unknowns x solid unknowns (of all solids in a row): right-hand side = data * g
 };
 
+/// `skin_penalty`: Nitsche's, without unit.
 template <int dim>
 SkinElasticity<dim> skin_elasticity(const Discretisation<dim>& disc,
-                                    std::span<const PartGeometry<dim>> geometries, double smoothing_length);
+                                    std::span<const PartGeometry<dim>> geometries, double smoothing_length,
+                                    double skin_penalty);
 
 } // namespace undula::fom

@@ -291,8 +291,8 @@ std::vector<SceneKey> numerics_keys() {
        "implicit coupling: largest difference between placed and computed displacement", shapes_state,
        RealKey{FIELD(time.motion.tolerance), cm_per_mm, above_to(0, 10), 1e-4}},
       {"time.coupling_iterations", "",
-       "implicit coupling: turns of cut and solve after which a step has failed", shapes_state,
-       IntegerKey{FIELD(time.motion.max_iterations), 1, 1000, MotionSettings{}.max_iterations}},
+       "implicit and mapped coupling: turns of placing and solving after which a step is halved",
+       shapes_state, IntegerKey{FIELD(time.motion.max_iterations), 1, 1000, MotionSettings{}.max_iterations}},
       {"time.halvings", "",
        "how often a step that fails, or that would take solids through a wall, may be halved; other "
        "couplings "

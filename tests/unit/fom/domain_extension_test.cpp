@@ -9,7 +9,9 @@
 #include <limits>
 
 #include "fom/assembly/part_geometry.hpp"
+#include "fom/mapping/unfolding.hpp"
 #include "geometry/wave_pump/pump.hpp"
+#include "rom/base/error.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
 namespace undula::fom {
@@ -239,6 +241,91 @@ TEST(DomainExtension, TurnsTheFluidWithATip) {
   EXPECT_GT(volume_left_at_a_turning_tip(6, ExtensionSettings{}.smoothing), 0.2);
   // An elastic medium alone has a corner's singularity.
   EXPECT_LT(volume_left_at_a_turning_tip(6, 0), 0.0);
+}
+
+using Map = std::vector<Point<2>>;
+
+/// A plate that closes `part` of its gap, by a harmonic reach, which folds at 0.72.
+Map folding_target(const Discretisation<2>& disc, const DomainExtension<2>& plain, double part) {
+  const Profile profile = [](const Point<2>&) { return Point<2>(0.0, 1.0); };
+  return extend(plain,
+                Eigen::VectorXd(part * closing_multiple(disc, profile) * solid_displacement(disc, profile)));
+}
+
+TEST(Unfolding, OpensWhatAMapFolds) {
+  auto disc = plate_in_channel(Space::plane);
+  const auto plain = prepare_extension(disc, harmonic);
+  const auto unfolding = prepare_unfolding(disc);
+  const Profile profile = [](const Point<2>&) { return Point<2>(0.0, 1.0); };
+  const double closed = closing_multiple(disc, profile);
+  Map last(disc.fluid_nodes.dof_point.size(), Point<2>::Zero());
+  for (const double part : {0.3, 0.6, 0.8, 0.9, 0.95}) {
+    const Map target = folding_target(disc, plain, part);
+    const std::vector<Map> starts = {last};
+    const auto map = unfold<2>(unfolding, target, starts);
+    disc.map.displacement = target;
+    const double before = smallest_volume_ratio(disc);
+    disc.map.displacement = map.displacement;
+    const double after = smallest_volume_ratio(disc);
+    const Eigen::VectorXd moved = part * closed * solid_displacement(disc, profile);
+    const double mean = mismatch(disc, moved).second;
+    disc.map.displacement = target;
+    const double of_target = mismatch(disc, moved).second;
+    disc.map = {};
+    std::printf(
+        "%.2f of the gap: J %.4f, corrected %.4f in %d iterations; off the skin by %.4f of the way, target "
+        "%.4f\n",
+        part, before, after, map.iterations, mean / (part * closed), of_target / (part * closed));
+    EXPECT_EQ(map.iterations == 0, before >= unfolding.settings.threshold);
+    EXPECT_EQ(before<0, part> 0.75);
+    EXPECT_GT(after, 0.15 * (1 - part)); // an even share of what is left would be 1 - part
+    EXPECT_NEAR(after, map.smallest_ratio, 1e-12);
+    EXPECT_LT(mean, 1.02 * of_target);
+    for (std::size_t node = 0; node < map.displacement.size(); ++node) {
+      const auto& x = disc.cut.mesh.points[disc.fluid_nodes.dof_point[node]];
+      if (x[1] == 0 || x[1] == Sizes::height) {
+        EXPECT_EQ(map.displacement[node].norm(), 0.0);
+      }
+    }
+    last = map.displacement;
+  }
+}
+
+// The correction grows from nothing: the map has no jump in time where it begins.
+TEST(Unfolding, BeginsWithoutAJump) {
+  const auto disc = plate_in_channel(Space::plane);
+  const auto plain = prepare_extension(disc, harmonic);
+  const auto unfolding = prepare_unfolding(disc);
+  Map last(disc.fluid_nodes.dof_point.size(), Point<2>::Zero());
+  double correction_before = 0, greatest_jump = 0;
+  int corrected = 0;
+  constexpr double step = 0.005;
+  for (double part = 0.3; part < 0.8; part += step) {
+    const Map target = folding_target(disc, plain, part);
+    const std::vector<Map> starts = {last};
+    const auto map = unfold<2>(unfolding, target, starts);
+    double correction = 0, way = 0;
+    for (std::size_t node = 0; node < target.size(); ++node) {
+      correction = std::max(correction, (map.displacement[node] - target[node]).norm());
+      way = std::max(way, (target[node]).norm() * step / part);
+    }
+    corrected += map.iterations > 0;
+    greatest_jump = std::max(greatest_jump, std::abs(correction - correction_before) / way);
+    correction_before = correction;
+    last = map.displacement;
+  }
+  std::printf("corrected in %d steps, the correction changes by at most %.2f of the way of the plate\n",
+              corrected, greatest_jump);
+  EXPECT_GT(corrected, 20);
+  EXPECT_LT(greatest_jump, 1.0);
+}
+
+TEST(Unfolding, RefusesAStartThatIsFolded) {
+  const auto disc = plate_in_channel(Space::plane);
+  const auto plain = prepare_extension(disc, harmonic);
+  const Map target = folding_target(disc, plain, 0.9);
+  const std::vector<Map> starts = {target};
+  EXPECT_THROW(unfold<2>(prepare_unfolding(disc), target, starts), NumericsError);
 }
 
 } // namespace
