@@ -29,8 +29,10 @@ struct Column {
 constexpr Column columns[] = {{"error (l/min)", &CurvePoint::error_l_per_min, 3, "unknown"},
                               {"inflow (l/min)", &CurvePoint::inflow_l_per_min, 4, "failed"},
                               {"spread (l/min)", &CurvePoint::spread_l_per_min, 4, "failed"},
+                              {"standard error (l/min)", &CurvePoint::standard_error_l_per_min, 4, "-"},
                               {"max speed (cm/s)", &CurvePoint::speed_max_cm_per_s, 1, "failed"},
-                              {"min clearance (mm)", &CurvePoint::clearance_min_mm, 3, "failed"}};
+                              {"min clearance (mm)", &CurvePoint::clearance_min_mm, 3, "failed"},
+                              {"film < 4 elements (%)", &CurvePoint::film_unresolved_percent, 0, "failed"}};
 
 /// Of a holder that is free to move.
 constexpr Column drive_columns[] = {
@@ -188,6 +190,8 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
   }
   entry["inflow_l_per_min"] = finite_or_null(point.inflow_l_per_min);
   entry["spread_l_per_min"] = finite_or_null(point.spread_l_per_min);
+  entry["standard_error_l_per_min"] = finite_or_null(point.standard_error_l_per_min);
+  entry["averaged_periods"] = point.averaged_periods;
   entry["hydraulic_power_mW"] = finite_or_null(point.power_mW);
   entry["holder_power_mW"] = finite_or_null(point.holder_power_mW);
   entry["holder"] = {{"stroke_mm", finite_or_null(point.stroke_mm)},
@@ -202,6 +206,10 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
                      {"efficiency_percent", finite_or_null(point.efficiency_percent)}};
   entry["speed_max_cm_per_s"] = finite_or_null(point.speed_max_cm_per_s);
   entry["clearance_min_mm"] = finite_or_null(point.clearance_min_mm);
+  if (std::isfinite(point.film_unresolved_percent)) {
+    entry["film"] = {{"elements_min", point.film_elements_min},
+                     {"unresolved_percent", point.film_unresolved_percent}};
+  }
   entry["periods"] = point.periods;
   entry["periodic"] = point.periodic;
   entry["reason"] = point.reason;

@@ -125,8 +125,11 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
       return fluid_fields(disc, fluid_picture(disc), state);
     };
   }
-  view.rows = {!scene.problem.general, scene.space == Space::plane, coupling_ != Coupling::fixed,
-               prepared_->observation.general.columns};
+  view.rows.pump = !scene.problem.general;
+  view.rows.per_depth = scene.space == Space::plane;
+  view.rows.moving = coupling_ != Coupling::fixed;
+  view.rows.general = prepared_->observation.general.columns;
+  view.rows.recut = coupling_ == Coupling::explicit_ || coupling_ == Coupling::implicit;
   view.rows.voltage = scene.operating_point.drive == Drive::voltage;
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;

@@ -12,9 +12,10 @@ void march_to(Marcher& marcher, int last, State& state, const StepCallback& on_s
 }
 
 void march(MarchingLevel& level, const Scene& scene, State& state, PhaseTimer& timer,
-           const StepCallback& on_step) {
+           const StepCallback& on_step, const StopCondition& ends) {
   const auto marcher = level.start(scene, state, timer);
-  march_to(*marcher, last_step(scene), state, on_step);
+  while (state.step < last_step(scene) && !(ends && ends(state)))
+    march_to(*marcher, state.step + 1, state, on_step);
 }
 
 } // namespace undula::fom

@@ -7,12 +7,11 @@
 #include <numeric>
 
 #include "fom/output/last_periods.hpp"
+#include "fom/output/settled_mean.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
 namespace {
-
-constexpr std::size_t averaged_unless_periodic = 3;
 
 struct Settled {
   double head_mmHg = 0;
@@ -93,7 +92,14 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   point.periods = static_cast<int>(periods);
   if (run.state == RunState::failed || periods == 0) return point;
 
-  const std::size_t averaged = point.periodic ? 1 : std::min(periods, averaged_unless_periodic);
+  // Of a state that does not repeat, the periods that its transient leaves.
+  std::vector<double> flows;
+  const auto flow_column = static_cast<std::size_t>(std::ranges::find(cycles.columns, "outflow_l_per_min") -
+                                                    cycles.columns.begin());
+  for (std::size_t period = 0; period < periods; ++period)
+    flows.push_back(cycles.mean[period * cycles.columns.size() + flow_column]);
+  const SettledMean settled = settled_mean(flows);
+  const std::size_t averaged = point.periodic ? 1 : static_cast<std::size_t>(settled.counted);
   const auto last_of = [&](const std::vector<double>& values, const char* name) {
     const auto column = static_cast<std::size_t>(
         std::find(cycles.columns.begin(), cycles.columns.end(), name) - cycles.columns.begin());
@@ -110,7 +116,11 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   };
   point.flow_l_per_min = mean("outflow_l_per_min");
   point.inflow_l_per_min = mean("inflow_l_per_min");
-  point.spread_l_per_min = last_periods(cycles, "outflow_l_per_min").spread;
+  point.spread_l_per_min = point.periodic ? last_periods(cycles, "outflow_l_per_min").spread : settled.spread;
+  if (!point.periodic) {
+    point.standard_error_l_per_min = settled.standard_error;
+    point.averaged_periods = settled.counted;
+  }
   point.power_mW = mean("hydraulic_power_mW");
   point.holder_power_mW = mean("holder_power_mW");
   // Phasors: a sin + b cos is the imaginary part of (a + i b) exp(i phase).
@@ -135,6 +145,9 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
       break;
     }
   point.speed_max_cm_per_s = std::ranges::max(last_of(cycles.maximum, "speed_max_cm_per_s"));
+  point.film_unresolved_percent = 100 * mean("film_unresolved");
+  if (std::isfinite(point.film_unresolved_percent))
+    point.film_elements_min = std::ranges::min(last_of(cycles.minimum, "film_elements"));
   point.clearance_min_mm = std::ranges::min(last_of(cycles.minimum, "clearance_min_mm"));
   return point;
 }

@@ -5,12 +5,18 @@
 #include <numbers>
 
 #include "fom/levels/period_check.hpp"
+#include "fom/output/settled_mean.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
 namespace {
+
+/// 1 where the narrowest film has too few elements, else 0; NaN where that is not known.
+double film_is_unresolved(const Observation& seen) {
+  return std::isnan(seen.film_elements) ? seen.film_elements : seen.film_elements < resolved_film_elements;
+}
 
 /// Steps are counted from the first of this march. The means of a signal times 2 sin and 2 cos of n times the
 /// drive's phase are the coefficients of its part at n times the frequency.
@@ -26,7 +32,8 @@ void append(TimeSeries& series, const Observation& seen, double frequency) {
         units::length_to_mm(seen.clearance_min), place, place * sine, place * cosine,
         place * 2 * std::sin(2 * phase), place * 2 * std::cos(2 * phase), place * 2 * std::sin(3 * phase),
         place * 2 * std::cos(3 * phase), force * sine, force * cosine,
-        units::power_to_mW(seen.holder.actuator_power), units::power_to_mW(seen.holder.electrical_power)})
+        units::power_to_mW(seen.holder.actuator_power), units::power_to_mW(seen.holder.electrical_power),
+        seen.film_elements, film_is_unresolved(seen)})
     series.values.push_back(value);
 }
 
@@ -38,7 +45,16 @@ std::vector<std::string> cycle_columns() {
           "holder_mm",           "holder_sine_mm",      "holder_cosine_mm",
           "holder_sine_2f_mm",   "holder_cosine_2f_mm", "holder_sine_3f_mm",
           "holder_cosine_3f_mm", "holder_force_sine_N", "holder_force_cosine_N",
-          "actuator_power_mW",   "electrical_power_mW"};
+          "actuator_power_mW",   "electrical_power_mW", "film_elements",
+          "film_unresolved"};
+}
+
+bool flow_is_known(const Scene& scene, std::span<const double> flows_l_per_min) {
+  constexpr int fewest = 6;
+  if (scene.time.flow_error <= 0) return false;
+  const auto settled = settled_mean(flows_l_per_min);
+  return settled.counted >= fewest &&
+         settled.standard_error <= units::flow_to_l_per_min(scene.time.flow_error);
 }
 
 PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State& state,
@@ -53,16 +69,24 @@ PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State
   const auto check = period_check(level, scene);
   try {
     const auto marcher = level.start(scene, state, timer);
-    for (int period = 1; period <= scene.time.periods && run.state != RunState::periodic; ++period) {
+    std::vector<double> flows; // l/min, by period
+    for (int period = 1; period <= scene.time.periods && run.state == RunState::not_periodic; ++period) {
       const bool ramped = state.time < ramp_end - time_step(scene) / 2;
       check->begin(state);
+      double outflow = 0;
       march_to(*marcher, state.step + steps, state, [&](const State& now, const Observation& seen) {
         append(series, seen, scene.operating_point.frequency);
         check->step(now, seen);
+        outflow += units::flow_to_l_per_min(seen.outflow) / steps;
         if (on_step) on_step(now, seen);
       });
-      if (check->end(period, ramped, state)) run.state = RunState::periodic;
+      flows.push_back(outflow);
+      if (check->end(period, ramped, state))
+        run.state = RunState::periodic;
+      else if (flow_is_known(scene, flows))
+        run.state = RunState::settled;
     }
+    if (run.state == RunState::settled) run.reason = check->left() + ", and the mean flow is known";
     if (run.state == RunState::not_periodic)
       run.reason = check->left() + " over period " + std::to_string(scene.time.periods) + " (tolerance " +
                    std::to_string(scene.training.periodic_tolerance) + ")";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 
 #include "fom/levels/march.hpp"
@@ -11,6 +12,7 @@ namespace undula::fom {
 
 enum class RunState {
   periodic,     ///< the last periods repeat within the tolerance
+  settled,      ///< they differ, but the mean flow is known as well as the scene asks (time.flow_error)
   not_periodic, ///< ran to its end, does not repeat
   failed,       ///< stopped by a NumericsError
 };
@@ -21,6 +23,10 @@ struct PeriodicRun {
   CycleMeans cycles;                     ///< of all periods, numbered from 1, see cycle_columns
   std::map<std::string, double> seconds; ///< wall time by phase, "total" among them
 };
+
+/// Whether the mean of these flows, one per period and in l/min, is known as well as the scene asks: its
+/// standard error by at least six periods.
+bool flow_is_known(const Scene& scene, std::span<const double> flows_l_per_min);
 
 /// Columns of PeriodicRun::cycles.
 std::vector<std::string> cycle_columns();
@@ -36,6 +42,8 @@ std::vector<std::string> cycle_columns();
 /// - Others: periodic when the mean outflow of two successive periods agrees to periodic_tolerance of the
 ///   root mean square of the outflow, and the displacements at their ends to the same part of the largest
 ///   displacement.
+///
+/// Where scene.time.flow_error is stated, a march also ends once the mean flow is known as well as that.
 ///
 /// A NumericsError ends in a run of state `failed`. `state` is the last good one. Collective; complete on
 /// every rank.

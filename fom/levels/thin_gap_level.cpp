@@ -1,6 +1,7 @@
 #include "fom/levels/thin_gap_level.hpp"
 
 #include "fom/levels/prepared_scene.hpp"
+#include "fom/machines/wave_pump/pump_problem.hpp"
 
 namespace undula::fom {
 namespace {
@@ -21,7 +22,11 @@ ThinGapLevel::ThinGapLevel(const Scene& scene, PhaseTimer& timer) : model_(prepa
 
 int ThinGapLevel::unknowns() const { return fom::unknowns(model_); }
 
-std::vector<std::string> ThinGapLevel::remarks(const Scene&, std::span<const double>) const { return {}; }
+std::vector<std::string> ThinGapLevel::remarks(const Scene& scene, std::span<const double>) const {
+  const auto membrane = scene_profile(scene).membrane;
+  if (membrane.tip_radius == 0 && membrane.rim_radius == 0) return {};
+  return {"the profile rounds the membrane's corners, which thin gaps do not know"};
+}
 
 State ThinGapLevel::initial_state() const { return fom::initial_state(model_); }
 

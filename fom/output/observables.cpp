@@ -29,18 +29,29 @@ std::pair<double, double> extent_at(const SimplexMesh<2>& mesh, double r) {
   return {low, high};
 }
 
-double minimal_clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, int solid_unknowns) {
-  if (plan.walls.empty() || plan.skin_unknowns.empty()) return 0.0;
+struct Clearance {
+  double smallest = 0;                                       ///< cm
+  double elements = std::numeric_limits<double>::infinity(); ///< least number across a film
+};
+
+Clearance clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, int solid_unknowns) {
+  Clearance least;
+  if (plan.walls.empty() || plan.skin_unknowns.empty()) return least;
   const Eigen::VectorXd moved = d.tail(solid_unknowns);
-  double smallest = std::numeric_limits<double>::infinity();
+  least.smallest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < plan.skin_unknowns.size(); ++i) {
     const Point<2> x = plan.skin_positions[i] + moved.segment<2>(plan.skin_unknowns[i]);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const auto& wall : plan.walls)
-      nearest = std::min(nearest, distance_to_segment<2>(wall[0], wall[1], x));
-    smallest = std::min(smallest, inside_outline(plan.outline, x) ? nearest : -nearest);
+    double nearest = std::numeric_limits<double>::infinity(), height = 1;
+    for (std::size_t w = 0; w < plan.walls.size(); ++w) {
+      const double distance = distance_to_segment<2>(plan.walls[w][0], plan.walls[w][1], x);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      height = plan.wall_heights[w];
+    }
+    least.smallest = std::min(least.smallest, inside_outline(plan.outline, x) ? nearest : -nearest);
+    least.elements = std::min(least.elements, nearest / height);
   }
-  return smallest;
+  return least;
 }
 
 struct WallShear {
@@ -117,8 +128,16 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
     std::array<Point<dim>, dim> simplex;
     for (int a = 0; a < dim; ++a) simplex[a] = disc.problem.background.points[facet.points[a]];
     plan.outline.push_back({simplex[0], simplex[1]});
-    const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[facet.tag]);
-    if (condition.kind == BoundaryCondition<dim>::Kind::velocity) plan.walls.push_back(simplex);
+  }
+  for (const auto& facet : build_facet_table(disc.problem.background).facets) {
+    if (facet.cells[1] >= 0) continue;
+    const auto& condition =
+        disc.problem.boundary.at(disc.problem.background.boundary_names[facet.boundary_tag]);
+    if (condition.kind != BoundaryCondition<dim>::Kind::velocity) continue;
+    auto& wall = plan.walls.emplace_back();
+    for (int a = 0; a < dim; ++a) wall[a] = disc.problem.background.points[facet.points[a]];
+    plan.wall_heights.push_back(
+        1 / barycentric_gradients(disc.problem.background, facet.cells[0]).col(facet.local[0]).norm());
   }
   return plan;
 }
@@ -145,7 +164,9 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   const auto shear = wall_shear(disc, operators, x);
   seen.wall_shear_max = shear.maximum;
   seen.wall_shear_mean = shear.mean;
-  seen.clearance_min = minimal_clearance(plan, state.d[0], disc.solid_unknowns());
+  const auto least = clearance(plan, state.d[0], disc.solid_unknowns());
+  seen.clearance_min = least.smallest;
+  if (disc.interface_moves) seen.film_elements = least.elements;
   if (!plan.probes.radius.empty()) {
     const Eigen::VectorXd axial = plan.probes.axial_displacement(state.d[0]);
     seen.tip_displacement = axial[0];

@@ -1,6 +1,8 @@
 // What a run reports at every step, in cgs.
 #pragma once
 
+#include <limits>
+
 #include "fom/coupling/motion_report.hpp"
 #include "fom/output/holder_observation.hpp"
 #include "fom/scene/general_observables.hpp"
@@ -28,15 +30,20 @@ struct Observation {
   double inflow = 0;          ///< into the inlet, cm^3/s
   double hydraulic_power = 0; ///< head times outflow, erg/s
   EnergyTerms energy;
-  double speed_max = 0;        ///< cm/s
-  double wall_shear_max = 0;   ///< dyn/cm^2, over the housing and stator
-  double wall_shear_mean = 0;  ///< dyn/cm^2, area mean
-  double clearance_min = 0;    ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  double speed_max = 0;       ///< cm/s
+  double wall_shear_max = 0;  ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0; ///< dyn/cm^2, area mean
+  double clearance_min = 0;   ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  /// Elements of the background across the narrowest film, where solids move through them; NaN elsewhere.
+  double film_elements = std::numeric_limits<double>::quiet_NaN();
   double tip_displacement = 0; ///< cm, axial, innermost probe
   HolderObservation holder;
   MotionReport motion;         ///< of couplings that move the domain
   std::vector<double> general; ///< by GeneralObservables::columns, cgs
 };
+
+/// A film with fewer elements across it is not resolved: docs/moving.md.
+constexpr double resolved_film_elements = 4;
 
 /// Precomputed geometry of the observables.
 template <int dim>
@@ -45,6 +52,7 @@ struct ObservationPlan {
   std::vector<int> skin_unknowns; ///< component 0 of the skin's nodes, counted from the solids' first unknown
   std::vector<Point<dim>> skin_positions;         ///< at rest, cm
   std::vector<std::array<Point<dim>, dim>> walls; ///< boundary simplices with imposed velocity
+  std::vector<double> wall_heights;               ///< of the element on each of them, across it, cm
   std::vector<Segment<dim>> outline;              ///< all boundary simplices
   GeneralObservables general;                     ///< empty but for scenes that state their problem
 };

@@ -11,8 +11,8 @@ constexpr double uJ_per_erg = 0.1;
 constexpr double mW_per_uJ_per_s = 1e-3;
 
 /// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves,
-/// those driven by a voltage.
-enum class In { all, pump, general, moving, voltage };
+/// those whose solids move through the elements, those driven by a voltage.
+enum class In { all, pump, general, moving, recut, voltage };
 
 struct Column {
   const char* name;
@@ -73,6 +73,7 @@ constexpr Column columns[] = {
     {"map_corrections",
      [](const Observation& o) { return static_cast<double>(o.motion.unfolding_iterations); }, In::moving},
     {"volume_ratio_min", [](const Observation& o) { return o.motion.smallest_volume_ratio; }, In::moving},
+    {"film_elements", [](const Observation& o) { return o.film_elements; }, In::recut},
     {"placement_error_mm", [](const Observation& o) { return units::length_to_mm(o.motion.placement_error); },
      In::moving},
 };
@@ -85,6 +86,8 @@ bool has(const RowLayout& layout, const Column& column) {
       return !layout.pump;
     case In::moving:
       return layout.moving;
+    case In::recut:
+      return layout.recut;
     case In::voltage:
       return layout.voltage;
     case In::all:
@@ -177,6 +180,13 @@ std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_
     period.energy_gap = period.input_power_mW != 0 ? gap / period.input_power_mW : 0.0;
     period.speed_max_cm_per_s = extremes("speed_max_cm_per_s").second;
     period.clearance_min_mm = extremes("clearance_min_mm").first;
+    if (value.has("film_elements")) {
+      period.film_elements_min = extremes("film_elements").first;
+      int thin = 0;
+      for (std::size_t row = begin; row < begin + length; ++row)
+        thin += value(row, "film_elements") < resolved_film_elements;
+      period.film_unresolved_percent = 100.0 * thin / steps_per_period;
+    }
     periods.push_back(period);
   }
   return periods;

@@ -11,6 +11,7 @@ struct RowLayout {
   bool pump = true;
   bool per_depth = false; ///< plane: powers and energies per cm of depth
   bool moving = false;    ///< the fluid's domain moves
+  bool recut = false;     ///< solids move through the elements
   std::vector<GeneralColumn> general;
   bool voltage = false; ///< the holder is driven by a voltage
 };
@@ -34,6 +35,9 @@ struct PeriodSummary {
   double energy_gap = 0;
   double speed_max_cm_per_s = 0;
   double clearance_min_mm = 0;
+  /// As in CurvePoint; NaN where solids do not move through the elements.
+  double film_elements_min = std::numeric_limits<double>::quiet_NaN(),
+         film_unresolved_percent = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The complete periods of a pump's table with observation_columns.

@@ -60,6 +60,7 @@ struct MeshSizes {
 struct TimeSettings : SteppingSettings {
   int steps_per_period = 0;
   int periods = 0;
+  double flow_error = 0;   ///< cm^3/s: ends where the mean flow's standard error is below; 0: never
   double ramp_periods = 0; ///< smooth start of stroke and head over this many periods
   double step = 0;         ///< s, of scenes without an actuator (Scene::problem.general)
   double end = 0;          ///< s, of the same
@@ -129,6 +130,8 @@ struct Scene {
   OpeningCondition outlet = OpeningCondition::total_pressure;
   FluidProperties fluid;
   SolidProperties membrane;
+  double tip_radius = 0;   ///< cm, of the corners of the membrane's tip; 0: as in the profile
+  double rim_radius = 0;   ///< cm, of the corners of its rim; 0: as in the profile
   double clamp_radius = 0; ///< cm; motion of the membrane is imposed for r >= clamp_radius
   OperatingPoint operating_point;
   ActuatorSettings actuator; ///< of Drive::voltage

@@ -44,6 +44,18 @@ void check_geometry(const Scene& scene, const std::string& where) {
   }
 }
 
+void check_corners(const Scene& scene, const std::string& where) {
+  const bool thin_gap = scene.space == Space::thin_gap;
+  if ((scene.tip_radius > 0 || scene.rim_radius > 0) && (thin_gap || !scene.solid_meshes.empty())) {
+    throw InputError(
+        thin_gap ? "thin gaps know no corners of the membrane"
+                 : "solids that come as meshes have the corners of their meshes",
+        "tip_radius_mm = " + shortest_number(to_surface_unit(scene.tip_radius, units::cm_per_mm)) +
+            ", rim_radius_mm = " + shortest_number(to_surface_unit(scene.rim_radius, units::cm_per_mm)),
+        "both 0", where + ", section [membrane]");
+  }
+}
+
 void check_clamp(const Scene& scene, const std::string& where) {
   if (!scene.solid_meshes.empty() && scene.clamp_radius == 0) {
     throw InputError("no profile says where the membrane is held", "clamp_radius_mm = 0",
@@ -178,6 +190,7 @@ void check_consistency(const Scene& scene, const std::string& where) {
   }
   check_geometry(scene, where);
   check_clamp(scene, where);
+  check_corners(scene, where);
   check_levels(scene, where);
   check_contact(scene, where);
   check_damping(scene, where);

@@ -144,6 +144,12 @@ std::vector<SceneKey> pump_keys() {
        "Rayleigh damping: force = this * (stiffness at rest) * velocity; for the linear solid the same as "
        "`damping_time_s`, so that one of the two has to be 0",
        shapes_state, RealKey{FIELD(membrane.stiffness_damping), 1, from_to(0, 1), 0.0}},
+      {"membrane.tip_radius_mm", "mm",
+       "radius of the corners of the membrane's tip; 0: as in the profile, where `membrane.tip_radius` is 0 "
+       "(sharp) if it is not stated",
+       shapes_state, RealKey{FIELD(tip_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
+      {"membrane.rim_radius_mm", "mm", "the same of the corners of its rim", shapes_state,
+       RealKey{FIELD(rim_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
       {"membrane.clamp_radius_mm", "mm",
        "the motion of the membrane is imposed from this radius outwards; 0: the radius in the profile",
        shapes_state, RealKey{FIELD(clamp_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
@@ -219,6 +225,11 @@ std::vector<SceneKey> period_keys() {
        IntegerKey{FIELD(time.steps_per_period), 8, 1000000, 96}},
       {"time.periods", "", "periods to compute", leaves_state,
        IntegerKey{FIELD(time.periods), 1, 1000000, 10}},
+      {"time.flow_error_l_per_min", "l/min",
+       "a run ends before its last period once the standard error of its mean flow is below this, by at "
+       "least "
+       "six periods; 0: it does not",
+       leaves_state, RealKey{FIELD(time.flow_error), units::flow_from_l_per_min(1), from_to(0, 1000), 0.0}},
       {"time.ramp_periods", "", "stroke and head rise smoothly over this many periods", shapes_state,
        RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}},
   };

@@ -8,6 +8,7 @@
 
 #include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/sized_segments.hpp"
+#include "geometry/wave_pump/membrane_outline.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::geometry {
@@ -44,7 +45,7 @@ struct Sides {
   explicit Sides(const PumpProfile& profile)
       : housing(open_line(profile.housing.points)),
         stator(open_line(profile.stator.points)),
-        membrane(polygon_sides(membrane_outline(profile.membrane))),
+        membrane(polygon_sides(membrane_outline(profile.membrane).points)),
         magnet(polygon_sides(profile.magnet.points)) {}
   Segments housing, stator, membrane, magnet;
 };

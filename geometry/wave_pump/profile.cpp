@@ -164,12 +164,17 @@ PumpProfile read_pump_profile(const std::filesystem::path& file) {
   profile.stator = reader.pairs(stator, "stator.", "profile");
 
   const auto& membrane = reader.table("membrane");
-  reader.only(membrane, "membrane.",
-              {"inner_radius", "outer_radius", "clamp_radius", "thickness", "mid_plane"});
+  reader.only(
+      membrane, "membrane.",
+      {"inner_radius", "outer_radius", "clamp_radius", "thickness", "mid_plane", "tip_radius", "rim_radius"});
   profile.membrane.inner_radius = reader.number(membrane, "membrane.", "inner_radius");
   profile.membrane.outer_radius = reader.number(membrane, "membrane.", "outer_radius");
   profile.membrane.clamp_radius = reader.number(membrane, "membrane.", "clamp_radius");
   profile.membrane.mid_plane = reader.number(membrane, "membrane.", "mid_plane");
+  if (membrane.contains("tip_radius"))
+    profile.membrane.tip_radius = reader.number(membrane, "membrane.", "tip_radius");
+  if (membrane.contains("rim_radius"))
+    profile.membrane.rim_radius = reader.number(membrane, "membrane.", "rim_radius");
   profile.membrane.thickness = reader.pairs(membrane, "membrane.", "thickness");
   profile.membrane.line = static_cast<int>(membrane.source().begin.line);
 
@@ -224,21 +229,6 @@ FluidOutline fluid_outline(const PumpProfile& profile) {
   add({0, housing.points.back().y()}, FluidOutline::outlet, line(housing, rim));
   for (std::size_t i = rim; i > 0; --i) add(housing.points[i], FluidOutline::housing, line(housing, i));
   add(housing.points.front(), FluidOutline::inlet, line(housing, 0));
-  return outline;
-}
-
-std::vector<Point<2>> membrane_outline(const MembraneProfile& membrane) {
-  std::vector<double> radii;
-  for (const auto& point : membrane.thickness.points) radii.push_back(point.x());
-  radii.push_back(membrane.clamp_radius);
-  std::sort(radii.begin(), radii.end());
-  radii.erase(std::unique(radii.begin(), radii.end()), radii.end());
-
-  std::vector<Point<2>> outline;
-  for (const double r : radii)
-    outline.emplace_back(r, membrane.mid_plane - 0.5 * membrane_thickness(membrane, r));
-  for (auto r = radii.rbegin(); r != radii.rend(); ++r)
-    outline.emplace_back(*r, membrane.mid_plane + 0.5 * membrane_thickness(membrane, *r));
   return outline;
 }
 

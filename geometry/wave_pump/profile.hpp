@@ -22,6 +22,8 @@ struct MembraneProfile {
   double outer_radius = 0; ///< cm, of the rim
   double clamp_radius = 0; ///< cm, the motion is imposed for r >= clamp_radius
   double mid_plane = 0;    ///< z, cm
+  double tip_radius = 0;   ///< cm, of the corners of the tip; 0: sharp
+  double rim_radius = 0;   ///< cm, of the corners of the rim; 0: sharp
   ProfileCurve thickness;  ///< (r, thickness), cm; linear between, from inner_radius to outer_radius
   int line = 0;            ///< of the table in the file
 };
@@ -57,10 +59,6 @@ struct FluidOutline {
   std::vector<int> lines; ///< of the point each edge starts from, 0 if unknown
 };
 FluidOutline fluid_outline(const PumpProfile& profile);
-
-/// Outline of the membrane at rest, counter-clockwise from the lower end of the tip: lower side, rim, upper
-/// side, tip. It has a point on either side at r = clamp_radius.
-std::vector<Point<2>> membrane_outline(const MembraneProfile& membrane);
 
 /// Checks a profile with exact predicates on the given coordinates. Throws InputError (with file and line)
 /// when a curve has too few points, a negative radius, points beyond 1e4 cm, crosses itself or another curve,

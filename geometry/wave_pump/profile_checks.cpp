@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "geometry/mesh/outline_faults.hpp"
+#include "geometry/wave_pump/membrane_outline.hpp"
 #include "geometry/wave_pump/profile.hpp"
 #include "rom/base/error.hpp"
 
@@ -67,7 +68,7 @@ public:
                        where(outline.lines.front()));
 
     const auto membrane =
-        solid_edges(membrane_outline(profile_.membrane), "membrane", {}, profile_.membrane.line);
+        solid_edges(membrane_outline(profile_.membrane).points, "membrane", {}, profile_.membrane.line);
     const auto magnet = solid_edges(profile_.magnet.points, "magnet", profile_.magnet.lines, 0);
     check_simple(magnet, "the magnet's polygon crosses or touches itself");
     check_inside(membrane, fluid, outline.points);
@@ -150,6 +151,12 @@ private:
       throw InputError(
           "'membrane.clamp_radius' lies outside of the membrane", text(membrane.clamp_radius) + " cm",
           text(membrane.inner_radius) + " < r < " + text(membrane.outer_radius), where(membrane.line));
+    for (const auto& [name, radius, largest] :
+         {std::tuple{"tip", membrane.tip_radius, largest_tip_radius(membrane)},
+          std::tuple{"rim", membrane.rim_radius, largest_rim_radius(membrane)}})
+      if (!(radius >= 0 && radius <= largest))
+        throw InputError(std::string("the corners of the membrane's ") + name + " cannot have this radius",
+                         text(radius) + " cm", "0 (sharp) to " + text(largest) + " cm", where(membrane.line));
   }
 
   static std::vector<Edge> fluid_edges(const FluidOutline& outline) {

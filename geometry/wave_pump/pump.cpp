@@ -4,6 +4,7 @@
 
 #include "geometry/mesh/polygon_mesh.hpp"
 #include "geometry/mesh/polygons.hpp"
+#include "geometry/wave_pump/membrane_outline.hpp"
 
 namespace undula::geometry {
 
@@ -34,16 +35,11 @@ SimplexMesh<2> pump_background(const PumpProfile& profile, const PumpMeshSizes& 
 SimplexMesh<2> pump_membrane(const PumpProfile& profile, const PumpMeshSizes& sizes) {
   const auto& membrane = profile.membrane;
   TaggedPolygon polygon;
-  polygon.points = membrane_outline(membrane);
-  polygon.names = {"lower", "rim", "upper", "tip"};
-  const int columns = static_cast<int>(polygon.points.size()) / 2; // points along one side
-  polygon.tags.assign(polygon.points.size(), 0);
-  polygon.tags[columns - 1] = 1;
-  std::fill(polygon.tags.begin() + columns, polygon.tags.end(), 2);
-  polygon.tags.back() = 3;
-  for (int i = 0; i < columns; ++i)
-    if (polygon.points[i].x() == membrane.clamp_radius)
-      polygon.inner_lines.push_back({i, 2 * columns - 1 - i});
+  const auto outline = membrane_outline(membrane);
+  polygon.points = outline.points;
+  polygon.names = {"lower", "rim", "upper", "tip"}; // in the order of MembraneOutline::Side
+  polygon.tags.assign(outline.sides.begin(), outline.sides.end());
+  polygon.inner_lines.push_back({outline.clamp[0], outline.clamp[1]});
 
   // No edge exceeds 4/3 of the target, so 3/8 of the thickness keeps two elements across.
   const auto size = [&](const Point<2>& x) {

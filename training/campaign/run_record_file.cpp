@@ -13,8 +13,9 @@ namespace {
 
 constexpr const char* format = "undula run record 2";
 
-constexpr std::array<std::pair<RunState, const char*>, 3> state_names{
+constexpr std::array<std::pair<RunState, const char*>, 4> state_names{
     {{RunState::periodic, "periodic"},
+     {RunState::settled, "settled"},
      {RunState::not_periodic, "not periodic"},
      {RunState::failed, "failed"}}};
 

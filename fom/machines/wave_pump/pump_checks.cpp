@@ -12,6 +12,7 @@
 #include "geometry/mesh/polygon_mesh.hpp"
 #include "geometry/mesh/polygons.hpp"
 #include "geometry/mesh/refinement_box.hpp"
+#include "geometry/wave_pump/membrane_outline.hpp"
 #include "geometry/wave_pump/pump.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
@@ -116,6 +117,20 @@ void check_clamp_radius(const Scene& scene, double inner, double outer, const st
                    place_of_key(scene, "membrane.clamp_radius_mm", name_of(scene)));
 }
 
+void round_corners(const Scene& scene, PumpProfile& profile) {
+  const auto round = [&](const std::string& key, double stated, double largest, double& radius) {
+    if (stated <= 0) return;
+    if (stated > largest)
+      throw InputError("the membrane's corners cannot have this radius", key + " = " + mm(stated),
+                       "0 (as in the profile) to " + mm(largest),
+                       place_of_key(scene, "membrane." + key, name_of(scene)));
+    radius = stated;
+  };
+  auto& membrane = profile.membrane;
+  round("tip_radius_mm", scene.tip_radius, largest_tip_radius(membrane), membrane.tip_radius);
+  round("rim_radius_mm", scene.rim_radius, largest_rim_radius(membrane), membrane.rim_radius);
+}
+
 PumpWork check_pump_work(const Scene& scene, const PumpProfile& profile) {
   const PumpMeshSizes sizes{scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
                             scene.mesh.growth};
@@ -148,8 +163,8 @@ PumpWork check_pump_work(const Scene& scene, const PumpProfile& profile) {
   const auto worst = std::max_element(fluid.by_source.begin(), fluid.by_source.end());
   std::string key = keys[static_cast<std::size_t>(worst - fluid.by_source.begin())];
   if (scene.space != Space::thin_gap) {
-    const auto solids =
-        lay_over({polygon_sides(membrane_outline(profile.membrane)), polygon_sides(profile.magnet.points)});
+    const auto solids = lay_over(
+        {polygon_sides(membrane_outline(profile.membrane).points), polygon_sides(profile.magnet.points)});
     for (const auto& piece : solids.pieces) {
       const bool membrane = solids.parts[piece.part].inside[0] != 0;
       const double growth = membrane ? 0.1 : 0.0; // the membrane's size follows its thickness

@@ -19,6 +19,10 @@ double mesh_unit_length(const Scene& scene);
 /// (cm), or on nothing of it; `what` says where these radii come from.
 void check_clamp_radius(const Scene& scene, double inner, double outer, const std::string& what);
 
+/// Gives the membrane of `profile` the corner radii that the scene states. Throws InputError for radii that
+/// do not fit.
+void round_corners(const Scene& scene, PumpProfile& profile);
+
 /// Cells that the sizes of a pump made from a profile ask for. Throws InputError, naming the key that asks
 /// for most of them, beyond `most_cells`.
 struct PumpWork {

@@ -18,6 +18,7 @@ PumpProfile scene_profile(const Scene& scene) {
   if (scene.clamp_radius > 0)
     check_clamp_radius(scene, profile.membrane.inner_radius, profile.membrane.outer_radius,
                        "the membrane has");
+  round_corners(scene, profile);
   return profile;
 }
 

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "fom/system/operators.hpp"
+#include "geometry/wave_pump/membrane_outline.hpp"
 #include "geometry/wave_pump/pump.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
@@ -242,7 +243,7 @@ TEST(PumpVolumes, AreThoseOfTheProfileRevolved) {
   const auto mass_between = [&](int begin, int end) {
     return one.segment(begin, end - begin).dot(momentum.segment(begin, end - begin));
   };
-  const double membrane = revolved(membrane_outline(profile.membrane)),
+  const double membrane = revolved(membrane_outline(profile.membrane).points),
                magnet = revolved(profile.magnet.points);
   const double fluid = revolved(fluid_outline(profile).points) - membrane - magnet;
   EXPECT_NEAR(mass_between(0, disc.solid_offset[0]), 1.06 * fluid, 1e-11 * fluid);

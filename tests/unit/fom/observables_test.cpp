@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -61,6 +62,19 @@ TEST(Clearance, IsTheGapLeftByTheDisplacedPlate) {
   EXPECT_NEAR(clearance({0, -0.2}), Sizes::plate_low - 0.2, 1e-14);
   EXPECT_NEAR(clearance({0.19, 0}), 0.01, 1e-14);
   EXPECT_NEAR(clearance({0, -0.3}), Sizes::plate_low - 0.3, 1e-14); // through the wall: negative
+}
+
+TEST(Clearance, IsCountedInElementsWhereSolidsMoveThroughThem) {
+  Box box(true);
+  const auto elements = [&](const Point<2>& shift) {
+    return box.see(box.nothing(), box.displaced([&](const Point<2>&) { return shift; })).film_elements;
+  };
+  EXPECT_TRUE(std::isnan(elements({0, 0}))); // the film has the elements that it has at rest
+  box.disc.interface_moves = true;
+  constexpr double height = Sizes::height / 9, width = Sizes::radius / 12;
+  EXPECT_NEAR(elements({0, 0.15}), (Sizes::height - Sizes::plate_high - 0.15) / height, 1e-12);
+  EXPECT_NEAR(elements({0, -0.2}), (Sizes::plate_low - 0.2) / height, 1e-12);
+  EXPECT_NEAR(elements({0.19, 0}), 0.01 / width, 1e-12);
 }
 
 TEST(WallShear, IsThatOfCouetteFlow) {

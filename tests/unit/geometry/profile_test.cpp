@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
 #include <string>
 
+#include "geometry/wave_pump/membrane_outline.hpp"
 #include "rom/base/error.hpp"
 #include "simple_pump.hpp"
 
@@ -61,7 +64,7 @@ TEST(Profile, OutlinesEncloseTheExactAreas) {
   const auto profile = simple_pump();
   const auto outline = fluid_outline(profile);
   EXPECT_NEAR(area(outline.points), 0.5 * 1 + 3 * 2.5 - 2 * 1 + 0.5 * 1.5, 1e-14);
-  const auto membrane = membrane_outline(profile.membrane);
+  const auto membrane = membrane_outline(profile.membrane).points;
   EXPECT_NEAR(area(membrane), 2.3 * 0.2, 1e-14);
   EXPECT_EQ(membrane.size(), 6u); // two ends and the clamp radius on either side
 
@@ -73,6 +76,40 @@ TEST(Profile, OutlinesEncloseTheExactAreas) {
   EXPECT_DOUBLE_EQ(length[FluidOutline::axis], 1.5 + 2.5);
   EXPECT_DOUBLE_EQ(length[FluidOutline::stator], 2 + 1 + 2);
   EXPECT_DOUBLE_EQ(length[FluidOutline::housing], 1 + 2.5 + 2.5 + 2.5 + 1.5);
+}
+
+// A corner of angle a and radius r loses r^2 (cot(a / 2) - (pi - a) / 2) by its arc, and less by chords.
+TEST(Profile, RoundsTheCornersOfTheMembrane) {
+  auto profile = read_pump_profile(source / "data/profiles/wave_pump_profile.toml");
+  auto& membrane = profile.membrane;
+  const double sharp = area(membrane_outline(membrane).points);
+  membrane.tip_radius = 0.02;
+  membrane.rim_radius = 0.05;
+  EXPECT_NO_THROW(check_pump_profile(profile));
+  const auto rounded = membrane_outline(membrane);
+  const double slope = std::atan(0.5 * (0.12 - 0.055) / 0.8), a = std::numbers::pi / 2 + slope;
+  const auto lost = [](double angle, double r) {
+    return r * r * (1 / std::tan(angle / 2) - (std::numbers::pi - angle) / 2);
+  };
+  const double arcs = 2 * lost(a, 0.02) + 2 * lost(std::numbers::pi / 2, 0.05);
+  EXPECT_GT(sharp - area(rounded.points), arcs);
+  EXPECT_LT(sharp - area(rounded.points), 1.15 * arcs);
+  double inner = 10, outer = 0;
+  for (const auto& x : rounded.points) {
+    inner = std::min(inner, x.x());
+    outer = std::max(outer, x.x());
+  }
+  EXPECT_EQ(inner, membrane.inner_radius);
+  EXPECT_EQ(outer, membrane.outer_radius);
+  for (const int k : rounded.clamp) EXPECT_EQ(rounded.points[k].x(), membrane.clamp_radius);
+  EXPECT_LT(rounded.points[rounded.clamp[0]].y(), rounded.points[rounded.clamp[1]].y());
+
+  membrane.tip_radius = largest_tip_radius(membrane);
+  EXPECT_NO_THROW(check_pump_profile(profile));
+  membrane.tip_radius *= 1.01;
+  EXPECT_THROW(check_pump_profile(profile), InputError);
+  membrane.tip_radius = -0.01;
+  EXPECT_THROW(check_pump_profile(profile), InputError);
 }
 
 TEST(Profile, AcceptsTheBaseOfTheBadOnes) { EXPECT_NO_THROW(check_pump_profile(simple_pump())); }
