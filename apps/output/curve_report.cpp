@@ -206,6 +206,11 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
                      {"efficiency_percent", finite_or_null(point.efficiency_percent)}};
   entry["speed_max_cm_per_s"] = finite_or_null(point.speed_max_cm_per_s);
   entry["clearance_min_mm"] = finite_or_null(point.clearance_min_mm);
+  if (std::isfinite(point.scalar_stress_max_Pa)) {
+    entry["blood"] = {{"haemolysis_percent", finite_or_null(point.haemolysis_percent)},
+                      {"scalar_stress_max_Pa", point.scalar_stress_max_Pa},
+                      {"stressed_volume_mm3", point.stressed_volume_mm3}};
+  }
   if (std::isfinite(point.film_unresolved_percent)) {
     entry["film"] = {{"elements_min", point.film_elements_min},
                      {"unresolved_percent", point.film_unresolved_percent}};

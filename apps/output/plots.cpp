@@ -143,6 +143,9 @@ bool plot_lines(const std::filesystem::path& picture, const std::string& title, 
   return draw_picture(picture, blocks.text(), commands);
 }
 
+constexpr const char* palette =
+    "set palette defined (0 '#352a87', 1 '#0868c6', 2 '#06a7c6', 3 '#7bbf6a', 4 '#f9c932', 5 '#f9fb0e')\n";
+
 bool plot_field(const std::filesystem::path& picture, const std::string& title, const FieldOnTriangles& field,
                 std::span<const std::vector<Eigen::Vector2d>> outlines) {
   // 1. Every triangle as a block of its own: a quadrilateral with two corners in one, which pm3d fills.
@@ -179,11 +182,36 @@ bool plot_field(const std::filesystem::path& picture, const std::string& title, 
   }
 
   // 3. Seen from above, equal scales, colours that stay readable in grey.
-  const std::string commands =
-      axes(title, field.axes[0], field.axes[1]) +
-      "set view map\nset size ratio -1\nset pm3d corners2color c1\n" +
-      "set palette defined (0 '#352a87', 1 '#0868c6', 2 '#06a7c6', 3 '#7bbf6a', 4 '#f9c932', 5 '#f9fb0e')\n" +
-      "set autoscale fix\nset cblabel " + gnuplot_string(field.label) + "\n" + plot_command("splot", items);
+  const std::string commands = axes(title, field.axes[0], field.axes[1]) +
+                               "set view map\nset size ratio -1\nset pm3d corners2color c1\n" + palette +
+                               "set autoscale fix\nset cblabel " + gnuplot_string(field.label) + "\n" +
+                               plot_command("splot", items);
+  return draw_picture(picture, data, commands);
+}
+
+bool plot_pieces(const std::filesystem::path& picture, const std::string& title,
+                 const ColouredPieces& coloured, std::span<const std::vector<Eigen::Vector2d>> outlines) {
+  std::string data = "# pieces: r (cm), z (cm), " + coloured.label + "\n";
+  for (std::size_t i = 0; i < coloured.pieces.size(); ++i) {
+    for (const Eigen::Vector2d& x : coloured.pieces[i]) {
+      data += row(x[0], x[1], coloured.values[i]);
+    }
+    data += "\n";
+  }
+  std::vector<std::string> items = {"data index 0 using 1:2:3 with lines lc palette lw 4 notitle"};
+  if (!outlines.empty()) {
+    data += "\n# outlines: r (cm), z (cm)\n";
+    for (const auto& outline : outlines) {
+      for (const Eigen::Vector2d& x : outline) {
+        data += row(x[0], x[1]);
+      }
+      data += "\n";
+    }
+    items.emplace_back("data index 1 using 1:2 with lines lc rgb 'black' lw 1 notitle");
+  }
+  const std::string commands = axes(title, "r (cm)", "z (cm)") + "set size ratio -1\n" + palette +
+                               "set cblabel " + gnuplot_string(coloured.label) + "\n" +
+                               plot_command("plot", items);
   return draw_picture(picture, data, commands);
 }
 

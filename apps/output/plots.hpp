@@ -56,4 +56,13 @@ struct FieldOnTriangles {
 bool plot_field(const std::filesystem::path& picture, const std::string& title, const FieldOnTriangles& field,
                 std::span<const std::vector<Eigen::Vector2d>> outlines);
 
+/// Straight pieces (cm) with a colour each, over thin outlines. `values` holds one value per piece.
+struct ColouredPieces {
+  std::span<const std::array<Eigen::Vector2d, 2>> pieces;
+  std::span<const double> values;
+  std::string label; ///< quantity and unit, beside the colours
+};
+bool plot_pieces(const std::filesystem::path& picture, const std::string& title,
+                 const ColouredPieces& coloured, std::span<const std::vector<Eigen::Vector2d>> outlines);
+
 } // namespace undula::apps

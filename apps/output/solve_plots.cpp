@@ -149,6 +149,24 @@ void plot_holder(const std::filesystem::path& folder, const TimeSeries& series, 
   plot_lines(folder / "holder.png", title, "time (s)", "holder", lines);
 }
 
+/// Mean shear of the walls over the last whole period, with the solids at rest.
+void plot_wall_shear(const RunDirectory& run, const std::string& title) {
+  if (!run.wall_shear().has_period() || run.view().walls.empty()) {
+    return;
+  }
+  std::vector<double> pascal;
+  for (const double shear : run.wall_shear().mean()) {
+    pascal.push_back(units::pressure_to_Pa(shear));
+  }
+  std::vector<Outline> solids;
+  for (const auto& edge : boundary_edges(run.view().solids)) {
+    solids.push_back({run.view().solids.points[static_cast<std::size_t>(edge[0])],
+                      run.view().solids.points[static_cast<std::size_t>(edge[1])]});
+  }
+  plot_pieces(run.folder() / "wall_shear.png", title + ", last period",
+              {run.view().walls, pascal, "mean wall shear (Pa)"}, solids);
+}
+
 void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, const std::string& title) {
   const auto time = column(series, "time_s"), outflow = column(series, "outflow_l_per_min"),
              inflow = column(series, "inflow_l_per_min");
@@ -173,6 +191,7 @@ void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
   plot_membrane(run.folder(), run.membrane(), run.view().probes.radius, scene.time.steps_per_period, title);
   plot_flow(run.folder(), run.series(), title);
   plot_holder(run.folder(), run.series(), title);
+  plot_wall_shear(run, title);
 }
 
 } // namespace undula::apps

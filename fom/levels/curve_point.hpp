@@ -33,6 +33,8 @@ struct CurvePoint {
   double actuator_power_mW = unknown;   ///< of Drive::voltage
   double electrical_power_mW = unknown; ///< of Drive::voltage with the resistance of the coil
   double efficiency_percent = unknown;  ///< hydraulic power of the electrical, else actuator's, else holder's
+  /// What the blood sees, of finite elements: see blood_stress.hpp. The percentage compares designs alone.
+  double haemolysis_percent = unknown, scalar_stress_max_Pa = unknown, stressed_volume_mm3 = unknown;
   double speed_max_cm_per_s = unknown, clearance_min_mm = unknown;
   /// Where solids move through the elements: the least number of elements across a film, and the part of the
   /// averaged periods with fewer than four.

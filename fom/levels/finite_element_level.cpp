@@ -130,6 +130,8 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
   view.rows.moving = coupling_ != Coupling::fixed;
   view.rows.general = prepared_->observation.general.columns;
   view.rows.recut = coupling_ == Coupling::explicit_ || coupling_ == Coupling::implicit;
+  view.rows.blood = prepared_->observation.blood.has_value();
+  view.walls = prepared_->observation.walls;
   view.rows.voltage = scene.operating_point.drive == Drive::voltage;
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;

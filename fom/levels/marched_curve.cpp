@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "fom/output/blood_stress.hpp"
 #include "fom/output/last_periods.hpp"
 #include "fom/output/settled_mean.hpp"
 #include "rom/base/units.hpp"
@@ -145,6 +146,12 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
       break;
     }
   point.speed_max_cm_per_s = std::ranges::max(last_of(cycles.maximum, "speed_max_cm_per_s"));
+  if (const double rate = mean("damage_rate_cm3_per_s"); rate > 0) {
+    point.haemolysis_percent =
+        haemolysis_percent(run.blood, rate, units::flow_from_l_per_min(point.flow_l_per_min));
+    point.scalar_stress_max_Pa = std::ranges::max(last_of(cycles.maximum, "scalar_stress_max_Pa"));
+    point.stressed_volume_mm3 = mean("stressed_volume_mm3");
+  }
   point.film_unresolved_percent = 100 * mean("film_unresolved");
   if (std::isfinite(point.film_unresolved_percent))
     point.film_elements_min = std::ranges::min(last_of(cycles.minimum, "film_elements"));

@@ -26,27 +26,56 @@ void append(TimeSeries& series, const Observation& seen, double frequency) {
   const double sine = 2 * std::sin(phase), cosine = 2 * std::cos(phase);
   const double place = units::length_to_mm(seen.holder.displacement),
                force = units::force_to_N(seen.holder.force);
-  for (const double value :
-       {units::flow_to_l_per_min(seen.outflow), units::flow_to_l_per_min(seen.inflow),
-        units::power_to_mW(seen.hydraulic_power), units::power_to_mW(seen.energy.holder), seen.speed_max,
-        units::length_to_mm(seen.clearance_min), place, place * sine, place * cosine,
-        place * 2 * std::sin(2 * phase), place * 2 * std::cos(2 * phase), place * 2 * std::sin(3 * phase),
-        place * 2 * std::cos(3 * phase), force * sine, force * cosine,
-        units::power_to_mW(seen.holder.actuator_power), units::power_to_mW(seen.holder.electrical_power),
-        seen.film_elements, film_is_unresolved(seen)})
+  for (const double value : {units::flow_to_l_per_min(seen.outflow),
+                             units::flow_to_l_per_min(seen.inflow),
+                             units::power_to_mW(seen.hydraulic_power),
+                             units::power_to_mW(seen.energy.holder),
+                             seen.speed_max,
+                             units::length_to_mm(seen.clearance_min),
+                             place,
+                             place * sine,
+                             place * cosine,
+                             place * 2 * std::sin(2 * phase),
+                             place * 2 * std::cos(2 * phase),
+                             place * 2 * std::sin(3 * phase),
+                             place * 2 * std::cos(3 * phase),
+                             force * sine,
+                             force * cosine,
+                             units::power_to_mW(seen.holder.actuator_power),
+                             units::power_to_mW(seen.holder.electrical_power),
+                             seen.film_elements,
+                             film_is_unresolved(seen),
+                             units::pressure_to_Pa(seen.blood.maximum),
+                             units::volume_to_mm3(seen.blood.stressed_volume),
+                             seen.blood.damage_rate})
     series.values.push_back(value);
 }
 
 } // namespace
 
 std::vector<std::string> cycle_columns() {
-  return {"outflow_l_per_min",   "inflow_l_per_min",    "hydraulic_power_mW",
-          "holder_power_mW",     "speed_max_cm_per_s",  "clearance_min_mm",
-          "holder_mm",           "holder_sine_mm",      "holder_cosine_mm",
-          "holder_sine_2f_mm",   "holder_cosine_2f_mm", "holder_sine_3f_mm",
-          "holder_cosine_3f_mm", "holder_force_sine_N", "holder_force_cosine_N",
-          "actuator_power_mW",   "electrical_power_mW", "film_elements",
-          "film_unresolved"};
+  return {"outflow_l_per_min",
+          "inflow_l_per_min",
+          "hydraulic_power_mW",
+          "holder_power_mW",
+          "speed_max_cm_per_s",
+          "clearance_min_mm",
+          "holder_mm",
+          "holder_sine_mm",
+          "holder_cosine_mm",
+          "holder_sine_2f_mm",
+          "holder_cosine_2f_mm",
+          "holder_sine_3f_mm",
+          "holder_cosine_3f_mm",
+          "holder_force_sine_N",
+          "holder_force_cosine_N",
+          "actuator_power_mW",
+          "electrical_power_mW",
+          "film_elements",
+          "film_unresolved",
+          "scalar_stress_max_Pa",
+          "stressed_volume_mm3",
+          "damage_rate_cm3_per_s"};
 }
 
 bool flow_is_known(const Scene& scene, std::span<const double> flows_l_per_min) {
@@ -95,6 +124,7 @@ PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State
     run.reason = error.what();
   }
   run.cycles = summarise_cycles(series, steps);
+  run.blood = scene.blood;
   for (const auto& [phase, entry] : timer.records()) run.seconds[phase] = entry.seconds;
   run.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return run;

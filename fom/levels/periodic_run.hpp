@@ -7,6 +7,7 @@
 
 #include "fom/levels/march.hpp"
 #include "fom/output/time_series.hpp"
+#include "fom/problem/blood_damage_law.hpp"
 
 namespace undula::fom {
 
@@ -21,6 +22,7 @@ struct PeriodicRun {
   RunState state = RunState::failed;
   std::string reason;                    ///< why it failed or does not repeat, else empty
   CycleMeans cycles;                     ///< of all periods, numbered from 1, see cycle_columns
+  BloodDamageLaw blood;                  ///< of the scene
   std::map<std::string, double> seconds; ///< wall time by phase, "total" among them
 };
 

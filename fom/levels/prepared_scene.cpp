@@ -22,6 +22,7 @@ std::unique_ptr<PreparedScene> prepare_scene(const Scene& scene, MPI_Comm comm, 
   prepared->operators = build_operators(prepared->disc, comm, timer);
   const bool general = scene.problem.general;
   prepared->observation = plan_observation(prepared->disc, general ? 0 : membrane_probe_count);
+  if (!general) prepared->observation.blood = scene.blood;
   if (general) prepared->observation.general = plan_general_observables(prepared->disc, scene);
   return prepared;
 }

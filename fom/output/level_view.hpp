@@ -24,6 +24,7 @@ struct LevelView {
   FieldMesh<2> fluid;                            ///< at rest
   FieldMesh<2> solids;                           ///< at rest
   std::vector<std::array<Point<2>, 2>> outlines; ///< cm, edges that bound the fluid at rest
+  std::vector<std::array<Point<2>, 2>> walls;    ///< cm, those of Observation::wall_shear; may be none
   Box<2> membrane_box;                           ///< cm, around the first solid at rest
   PictureOfState moved_fluid; ///< empty where the fluid's domain does not move: then it is `fluid`
   FieldsOfState fluid_fields; ///< on `moved_fluid` or `fluid`: "velocity" (cm/s), "pressure" (dyn/cm^2), ...

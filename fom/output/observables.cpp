@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "fom/fom.hpp"
 #include "fom/scene/operating_point.hpp"
@@ -56,10 +57,13 @@ Clearance clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, in
 
 struct WallShear {
   double maximum = 0, mean = 0;
+  std::vector<double> by_wall;
 };
 
-WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operators, const Eigen::VectorXd& x) {
+WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operators,
+                     const ObservationPlan<2>& plan, const Eigen::VectorXd& x) {
   WallShear shear;
+  shear.by_wall.assign(plan.walls.size(), 0.0);
   double area = 0;
   const Measure measure = measure_of(disc.problem.space);
   for (const auto& piece : disc.cut.boundary) {
@@ -71,6 +75,8 @@ WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operator
     const Point<2> traction = disc.problem.fluid.viscosity * (gradient + gradient.transpose()) * n;
     const double tangential = (traction - traction.dot(n) * n).norm();
     shear.maximum = std::max(shear.maximum, tangential);
+    double& here = shear.by_wall[static_cast<std::size_t>(plan.wall_of_facet[piece.facet])];
+    here = std::max(here, tangential);
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
       const double w =
           disc.cut.boundary_quadrature.weights[q] * measure(disc.cut.boundary_quadrature.points[q][0]);
@@ -130,10 +136,12 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
     plan.outline.push_back({simplex[0], simplex[1]});
   }
   for (const auto& facet : build_facet_table(disc.problem.background).facets) {
+    plan.wall_of_facet.push_back(-1);
     if (facet.cells[1] >= 0) continue;
     const auto& condition =
         disc.problem.boundary.at(disc.problem.background.boundary_names[facet.boundary_tag]);
     if (condition.kind != BoundaryCondition<dim>::Kind::velocity) continue;
+    plan.wall_of_facet.back() = static_cast<int>(plan.walls.size());
     auto& wall = plan.walls.emplace_back();
     for (int a = 0; a < dim; ++a) wall[a] = disc.problem.background.points[facet.points[a]];
     plan.wall_heights.push_back(
@@ -161,9 +169,11 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   seen.energy = stepper.energy(state, residual);
   for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());
-  const auto shear = wall_shear(disc, operators, x);
+  auto shear = wall_shear(disc, operators, plan, x);
   seen.wall_shear_max = shear.maximum;
   seen.wall_shear_mean = shear.mean;
+  seen.wall_shear = std::move(shear.by_wall);
+  if (plan.blood) seen.blood = blood_stress(disc, *plan.blood, x);
   const auto least = clearance(plan, state.d[0], disc.solid_unknowns());
   seen.clearance_min = least.smallest;
   if (disc.interface_moves) seen.film_elements = least.elements;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "fom/coupling/motion_report.hpp"
+#include "fom/output/blood_stress.hpp"
 #include "fom/output/holder_observation.hpp"
 #include "fom/scene/general_observables.hpp"
 #include "geometry/mesh/segments.hpp"
@@ -30,10 +32,12 @@ struct Observation {
   double inflow = 0;          ///< into the inlet, cm^3/s
   double hydraulic_power = 0; ///< head times outflow, erg/s
   EnergyTerms energy;
-  double speed_max = 0;       ///< cm/s
-  double wall_shear_max = 0;  ///< dyn/cm^2, over the housing and stator
-  double wall_shear_mean = 0; ///< dyn/cm^2, area mean
-  double clearance_min = 0;   ///< cm, displaced skin to walls; negative where the skin has passed a wall
+  double speed_max = 0;           ///< cm/s
+  double wall_shear_max = 0;      ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0;     ///< dyn/cm^2, area mean
+  std::vector<double> wall_shear; ///< dyn/cm^2, by wall of the plan; 0 where a solid covers it
+  BloodStress blood;
+  double clearance_min = 0; ///< cm, displaced skin to walls; negative where the skin has passed a wall
   /// Elements of the background across the narrowest film, where solids move through them; NaN elsewhere.
   double film_elements = std::numeric_limits<double>::quiet_NaN();
   double tip_displacement = 0; ///< cm, axial, innermost probe
@@ -54,6 +58,8 @@ struct ObservationPlan {
   std::vector<std::array<Point<dim>, dim>> walls; ///< boundary simplices with imposed velocity
   std::vector<double> wall_heights;               ///< of the element on each of them, across it, cm
   std::vector<Segment<dim>> outline;              ///< all boundary simplices
+  std::vector<int> wall_of_facet;                 ///< by facet of the background: its place in `walls`, or -1
+  std::optional<BloodDamageLaw> blood;            ///< nothing: not observed
   GeneralObservables general;                     ///< empty but for scenes that state their problem
 };
 

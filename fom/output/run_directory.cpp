@@ -146,7 +146,8 @@ RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const S
       view_(std::move(view)),
       scene_(scene),
       stamp_(stamp_scene(scene)),
-      provenance_(provenance(ranks)) {
+      provenance_(provenance(ranks)),
+      wall_shear_(scene.time.steps_per_period) {
   check_run_directory(folder_, scene, existing);
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
@@ -221,6 +222,7 @@ void RunDirectory::record(const State& state, const Observation& seen) {
     const Eigen::VectorXd axial_mm = view_.probes.axial_displacement(state.d[0]) / units::cm_per_mm;
     membrane_->append(state.step, {axial_mm.data(), static_cast<std::size_t>(axial_mm.size())});
   }
+  if (view_.rows.pump) wall_shear_.add(state.step, seen.wall_shear);
   const auto due = [&](int every) { return every > 0 && state.step % every == 0; };
   if (due(scene_.output.fields_every)) {
     const auto fields = view_.fluid_fields(state);
@@ -258,6 +260,8 @@ void RunDirectory::write_summaries() const {
     text += exact_number(units::length_to_mm(radius[k])) + "," + exact_number(envelope.minimum[last + k]) +
             "," + exact_number(envelope.maximum[last + k]) + "\n";
   replace_text_file(folder_ / "envelope.csv", text);
+  if (wall_shear_.has_period() && !view_.walls.empty())
+    write_wall_shear(wall_shear_, view_.walls, folder_ / "wall_shear.csv");
 }
 
 void RunDirectory::finish(const State& state, const PhaseTimer& timer) {

@@ -7,6 +7,7 @@
 //   membrane.csv          axial displacement of the membrane at its probes, one row per step
 //   cycle_means.csv       mean, lowest and highest of every column of time_series.csv, one row per period
 //   envelope.csv          radius_mm, low_mm, high_mm: reach of the membrane over the last complete period
+//   wall_shear.csv        mean and greatest shear of every wall element over the last complete period
 //   fluid.xdmf, solids.xdmf and their HDF5 files, every output.fields_every steps
 //   checkpoints/          the last two: as output.checkpoint_every says, at the end, on a signal, and where
 //   the
@@ -23,6 +24,7 @@
 #include "fom/output/checkpoint.hpp"
 #include "fom/output/level_view.hpp"
 #include "fom/output/step_table.hpp"
+#include "fom/output/wall_shear_map.hpp"
 #include "fom/scene/scene.hpp"
 #include "rom/base/phase_timer.hpp"
 
@@ -78,6 +80,7 @@ public:
 
   const std::filesystem::path& folder() const { return folder_; }
   const LevelView& view() const { return view_; }
+  const WallShearMap& wall_shear() const { return wall_shear_; }
   const TimeSeries& series() const { return series_->table(); }
   const TimeSeries& membrane() const {
     return membrane_->table();
@@ -99,6 +102,7 @@ private:
   std::vector<std::string> damaged_;
   std::optional<TimeSeriesFile> series_, membrane_;
   std::optional<FieldWriter<2>> fluid_writer_, solid_writer_;
+  WallShearMap wall_shear_;
 };
 
 } // namespace undula::fom

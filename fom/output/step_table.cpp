@@ -11,8 +11,9 @@ constexpr double uJ_per_erg = 0.1;
 constexpr double mW_per_uJ_per_s = 1e-3;
 
 /// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves,
-/// those whose solids move through the elements, those driven by a voltage.
-enum class In { all, pump, general, moving, recut, voltage };
+/// those whose solids move through the elements, those driven by a voltage, pumps
+/// whose fluid has a resolved stress.
+enum class In { all, pump, general, moving, recut, voltage, blood };
 
 struct Column {
   const char* name;
@@ -48,6 +49,11 @@ constexpr Column columns[] = {
     {"speed_max_cm_per_s", [](const Observation& o) { return o.speed_max; }},
     {"wall_shear_max_dyn_per_cm2", [](const Observation& o) { return o.wall_shear_max; }},
     {"wall_shear_mean_dyn_per_cm2", [](const Observation& o) { return o.wall_shear_mean; }},
+    {"scalar_stress_max_Pa", [](const Observation& o) { return units::pressure_to_Pa(o.blood.maximum); },
+     In::blood},
+    {"stressed_volume_mm3",
+     [](const Observation& o) { return units::volume_to_mm3(o.blood.stressed_volume); }, In::blood},
+    {"damage_rate_cm3_per_s", [](const Observation& o) { return o.blood.damage_rate; }, In::blood},
     {"clearance_min_mm", [](const Observation& o) { return units::length_to_mm(o.clearance_min); }},
     {"tip_displacement_mm", [](const Observation& o) { return units::length_to_mm(o.tip_displacement); },
      In::pump},
@@ -88,6 +94,8 @@ bool has(const RowLayout& layout, const Column& column) {
       return layout.moving;
     case In::recut:
       return layout.recut;
+    case In::blood:
+      return layout.blood;
     case In::voltage:
       return layout.voltage;
     case In::all:

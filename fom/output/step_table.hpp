@@ -13,6 +13,7 @@ struct RowLayout {
   bool moving = false;    ///< the fluid's domain moves
   bool recut = false;     ///< solids move through the elements
   std::vector<GeneralColumn> general;
+  bool blood = false;   ///< a pump whose fluid has a resolved stress
   bool voltage = false; ///< the holder is driven by a voltage
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fom/actuator/actuator.hpp"
+#include "fom/problem/blood_damage_law.hpp"
 #include "fom/problem/conditions.hpp"
 #include "fom/problem/materials.hpp"
 #include "fom/problem/stabilisation_weights.hpp"
@@ -130,6 +131,7 @@ struct Scene {
   OpeningCondition outlet = OpeningCondition::total_pressure;
   FluidProperties fluid;
   SolidProperties membrane;
+  BloodDamageLaw blood;
   double tip_radius = 0;   ///< cm, of the corners of the membrane's tip; 0: as in the profile
   double rim_radius = 0;   ///< cm, of the corners of its rim; 0: as in the profile
   double clamp_radius = 0; ///< cm; motion of the membrane is imposed for r >= clamp_radius

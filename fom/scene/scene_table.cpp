@@ -206,6 +206,24 @@ std::vector<SceneKey> actuator_keys() {
   };
 }
 
+std::vector<SceneKey> blood_keys() {
+  return {
+      {"blood.damage_coefficient_percent", "",
+       "free haemoglobin in percent = this * (scalar stress in Pa)^stress_exponent * seconds^time_exponent: "
+       "a law "
+       "for comparing designs, orders of magnitude off in absolute terms. Default: Zhang et al. 2011; "
+       "Giersiepen et al. 1990: 3.62e-5, 2.416, 0.785; Heuser & Opitz 1980: 1.8e-6, 1.991, 0.765. Finite "
+       "elements alone",
+       leaves_state, RealKey{FIELD(blood.coefficient), 1, from_to(0, 1), 1.228e-5}},
+      {"blood.damage_stress_exponent", "", "see `damage_coefficient_percent`", leaves_state,
+       RealKey{FIELD(blood.stress_exponent), 1, above_to(0, 10), 1.9918}},
+      {"blood.damage_time_exponent", "", "see `damage_coefficient_percent`", leaves_state,
+       RealKey{FIELD(blood.time_exponent), 1, above_to(0, 1), 0.6606}},
+      {"blood.stress_threshold_Pa", "Pa", "scalar stress beyond which the volume of fluid is counted",
+       leaves_state, RealKey{FIELD(blood.threshold), units::dyn_per_cm2_per_Pa, from_to(0, 1e6), 50.0}},
+  };
+}
+
 std::vector<SceneKey> mesh_keys() {
   return {
       {"mesh.gap_elements", "", "elements across the narrowest clearance between solids and walls",
@@ -486,9 +504,10 @@ std::span<const SceneKey> scene_table() {
     for (const auto& part :
          {model_keys(), scoped(Scope::pump, geometry_keys()), scoped(Scope::general, domain_keys()),
           fluid_keys(), scoped(Scope::pump, pump_keys()), scoped(Scope::pump, actuator_keys()),
-          scoped(Scope::pump, mesh_keys()), numerics_keys(), scoped(Scope::pump, period_keys()),
-          scoped(Scope::general, duration_keys()), scoped(Scope::general, statistics_keys()),
-          stabilisation_keys(), scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
+          scoped(Scope::pump, blood_keys()), scoped(Scope::pump, mesh_keys()), numerics_keys(),
+          scoped(Scope::pump, period_keys()), scoped(Scope::general, duration_keys()),
+          scoped(Scope::general, statistics_keys()), stabilisation_keys(),
+          scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     for (SceneKey& key : all) {

@@ -12,10 +12,13 @@ inline constexpr double N_per_dyn = 1e-5;
 inline constexpr double mW_per_erg_per_s = 1e-4;
 
 constexpr double pressure_from_mmHg(double p) { return p * dyn_per_cm2_per_mmHg; }
+inline constexpr double dyn_per_cm2_per_Pa = 10;
+constexpr double pressure_to_Pa(double p) { return p / dyn_per_cm2_per_Pa; }
 constexpr double pressure_to_mmHg(double p) { return p / dyn_per_cm2_per_mmHg; }
 constexpr double flow_from_l_per_min(double q) { return q * cm3_per_s_per_l_per_min; }
 constexpr double flow_to_l_per_min(double q) { return q / cm3_per_s_per_l_per_min; }
 constexpr double length_from_mm(double x) { return x * cm_per_mm; }
+constexpr double volume_to_mm3(double v) { return v / (cm_per_mm * cm_per_mm * cm_per_mm); }
 constexpr double length_to_mm(double x) { return x / cm_per_mm; }
 constexpr double force_to_N(double f) { return N_per_dyn * f; }
 constexpr double power_to_mW(double p) { return mW_per_erg_per_s * p; }
