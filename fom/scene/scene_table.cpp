@@ -243,7 +243,7 @@ std::vector<SceneKey> period_keys() {
        IntegerKey{FIELD(time.steps_per_period), 8, 1000000, 96}},
       {"time.periods", "", "periods to compute", leaves_state,
        IntegerKey{FIELD(time.periods), 1, 1000000, 10}},
-      {"time.flow_error_l_per_min", "l/min",
+      {"time.flow_error_l_per_min", "l_per_min",
        "a run ends before its last period once the standard error of its mean flow is below this, by at "
        "least "
        "six periods; 0: it does not",
@@ -538,13 +538,17 @@ std::span<const SceneKey> scene_table() {
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 14> help = {{
+  static const std::array<std::pair<const char*, const char*>, 15> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
       {"geometry", "Of a pump: either a profile, or meshes made elsewhere."},
       {"domain", "The fluid's domain of any other problem: a polygon or a circle, with holes ([hole.NAME])."},
       {"fluid", "Newtonian, incompressible."},
       {"membrane", "Material of the membrane and the region that the actuator holds."},
       {"operating_point", "What the pump is driven with."},
+      {"blood",
+       "What the flow does to blood, by the stress of a pump's finite elements: a law of haemolysis to "
+       "compare "
+       "designs by."},
       {"actuator",
        "The motor of `drive = \"voltage\"`: a force in proportion to the voltage on a mass with a suspension "
        "(docs/drive.md)."},
