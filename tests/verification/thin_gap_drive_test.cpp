@@ -127,20 +127,21 @@ TEST(VoltageDrive, PowersBalance) {
 TEST(VoltageDrive, HarmonicsMakeUpTheMotion) {
   const auto compare = [](const Settings& more) {
     const auto result = run(pump_by_voltage(), more);
-    double mean = 0, square = 0;
-    for (std::size_t i = result.steps.size() - 72; i < result.steps.size(); ++i) {
-      const double place = 10 * result.steps[i].holder.displacement; // mm
-      mean += place / 72;
-      square += place * place / 72;
-    }
     const CurvePoint& point = result.point;
+    const int counted = 72 * point.averaged_periods;
+    double mean = 0, square = 0;
+    for (auto step = result.steps.end() - counted; step != result.steps.end(); ++step) {
+      const double place = 10 * step->holder.displacement; // mm
+      mean += place / counted;
+      square += place * place / counted;
+    }
     const double variance = square - mean * mean;
     const double told = 0.5 * (std::pow(point.stroke_mm, 2) + std::pow(point.stroke_2f_mm, 2) +
                                std::pow(point.stroke_3f_mm, 2));
     std::printf("stroke %.4f mm, at 2 f %.4f, at 3 f %.4f: %.4f %% of the motion is beyond them\n",
                 point.stroke_mm, point.stroke_2f_mm, point.stroke_3f_mm, 100 * (1 - told / variance));
     EXPECT_NEAR(told / variance, 1, 1e-3);
-    EXPECT_NEAR(point.offset_mm, mean, 5e-4); // it is a mean of the last periods
+    EXPECT_NEAR(point.offset_mm, mean, 1e-12);
     return point;
   };
   const CurvePoint free = compare({}),
