@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
@@ -211,9 +212,16 @@ bool knows_its_flow(const Scene& scene, const std::optional<RunDirectory>& outpu
     return false;
   }
   int known = 0;
-  if (output) {
-    known = flow_is_known(scene, flows_of(summarise_periods(output->series(), scene.time.steps_per_period)));
-  }
+  on_root(comm, [&] {
+    const auto flows = flows_of(summarise_periods(output->series(), scene.time.steps_per_period));
+    const auto ramped = static_cast<std::size_t>(std::ceil(scene.time.ramp_periods));
+    known = flows.size() > ramped && flow_is_known(scene, std::span(flows).subspan(ramped));
+    if (known) {
+      spdlog::info(
+          "the mean flow is known as well as time.flow_error_l_per_min asks: ended after period {} of {}",
+          flows.size(), scene.time.periods);
+    }
+  });
   MPI_Bcast(&known, 1, MPI_INT, 0, comm);
   return known != 0;
 }

@@ -118,6 +118,7 @@ void MovingStepper<dim>::place_cut(const Eigen::VectorXd& placement, const State
 template <int dim>
 std::vector<Point<dim>> MovingStepper<dim>::unfolded(const std::vector<Point<dim>>& target,
                                                      const Eigen::VectorXd& last, const State& before) {
+  if (needs_no_unfolding(*unfolding_, target)) return target;
   std::vector<std::vector<Point<dim>>> starts(1, std::vector<Point<dim>>(target.size()));
   for (std::size_t node = 0; node < target.size(); ++node)
     starts[0][node] = last.segment<dim>(static_cast<Eigen::Index>(node) * dim);
@@ -163,7 +164,7 @@ void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, 
                         "volume ratio " + std::to_string(smallest.ratio) + " of the element at rest about (" +
                             std::to_string(smallest.place[0]) + ", " + std::to_string(smallest.place[1]) +
                             ") cm",
-                        "coupling = \"explicit\", which cuts anew, or less stroke");
+                        "coupling = \"explicit\", which cuts anew, or a smaller time step");
 }
 
 template <int dim>

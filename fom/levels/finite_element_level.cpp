@@ -129,7 +129,7 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
   view.rows.per_depth = scene.space == Space::plane;
   view.rows.moving = coupling_ != Coupling::fixed;
   view.rows.general = prepared_->observation.general.columns;
-  view.rows.recut = coupling_ == Coupling::explicit_ || coupling_ == Coupling::implicit;
+  view.rows.recut = view.rows.pump && (coupling_ == Coupling::explicit_ || coupling_ == Coupling::implicit);
   view.rows.blood = prepared_->observation.blood.has_value();
   view.walls = prepared_->observation.walls;
   view.rows.voltage = scene.operating_point.drive == Drive::voltage;

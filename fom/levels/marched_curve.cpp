@@ -97,7 +97,8 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   std::vector<double> flows;
   const auto flow_column = static_cast<std::size_t>(std::ranges::find(cycles.columns, "outflow_l_per_min") -
                                                     cycles.columns.begin());
-  for (std::size_t period = 0; period < periods; ++period)
+  const auto plain = std::min(periods, static_cast<std::size_t>(std::max(run.plain_periods, 1)));
+  for (std::size_t period = periods - plain; period < periods; ++period)
     flows.push_back(cycles.mean[period * cycles.columns.size() + flow_column]);
   const SettledMean settled = settled_mean(flows);
   const std::size_t averaged = point.periodic ? 1 : static_cast<std::size_t>(settled.counted);
@@ -146,7 +147,7 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
       break;
     }
   point.speed_max_cm_per_s = std::ranges::max(last_of(cycles.maximum, "speed_max_cm_per_s"));
-  if (const double rate = mean("damage_rate_cm3_per_s"); rate > 0) {
+  if (const double rate = mean("damage_rate_cm3_per_s"); std::isfinite(rate)) {
     point.haemolysis_percent =
         haemolysis_percent(run.blood, rate, units::flow_from_l_per_min(point.flow_l_per_min));
     point.scalar_stress_max_Pa = std::ranges::max(last_of(cycles.maximum, "scalar_stress_max_Pa"));

@@ -29,6 +29,7 @@ public:
 
   bool end(int period, bool ramped, State& state) override {
     ++plain_periods_;
+    replaced_ = false;
     // Velocity and displacement are each measured in the mass: a membrane that creeps by a little every
     // period has a small velocity all along, and only its displacement tells.
     change_ = std::max(relative_change(state.x[0], start_x_), relative_change(state.d[0], start_d_));
@@ -53,6 +54,8 @@ public:
     return false;
   }
 
+  bool replaced() const override { return replaced_; }
+
   std::string left() const override { return "the state still changes by " + std::to_string(change_); }
 
 private:
@@ -73,6 +76,7 @@ private:
     state.step = step;
     state.time = time;
     plain_periods_ = 0;
+    replaced_ = true;
   }
 
   void extrapolate(State& state) {
@@ -115,7 +119,7 @@ private:
   std::deque<State> ends_; ///< of the last periods, plainly marched one after the other
   State before_extrapolation_;
   double change_ = 1, change_before_ = 1;
-  bool just_extrapolated_ = false, may_extrapolate_ = true;
+  bool just_extrapolated_ = false, may_extrapolate_ = true, replaced_ = false;
   int plain_periods_ = 0;
 };
 

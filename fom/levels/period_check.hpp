@@ -23,6 +23,9 @@ public:
   /// period. Collective.
   virtual bool end(int period, bool ramped, State& state) = 0;
 
+  /// Whether the last `end` replaced the state: the flows before belong to another march.
+  virtual bool replaced() const { return false; }
+
   /// What is left of the change from period to period, for a message.
   virtual std::string left() const = 0;
 };

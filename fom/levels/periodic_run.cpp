@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "fom/levels/period_check.hpp"
@@ -18,64 +19,67 @@ double film_is_unresolved(const Observation& seen) {
   return std::isnan(seen.film_elements) ? seen.film_elements : seen.film_elements < resolved_film_elements;
 }
 
-/// Steps are counted from the first of this march. The means of a signal times 2 sin and 2 cos of n times the
-/// drive's phase are the coefficients of its part at n times the frequency.
+double place_of(const Observation& seen) { return units::length_to_mm(seen.holder.displacement); }
+double force_of(const Observation& seen) { return units::force_to_N(seen.holder.force); }
+
+/// A number of the blood's stress; NaN where it is not observed.
+template <double BloodStress::*member>
+double blood_of(const Observation& seen) {
+  return seen.blood ? (*seen.blood).*member : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// What is averaged over a period, by the observation and the phase of the drive. The means of a signal times
+/// 2 sin and 2 cos of n times the phase are the coefficients of its part at n times the frequency.
+struct Column {
+  const char* name;
+  double (*value)(const Observation& seen, double phase);
+};
+constexpr Column columns[] = {
+    {"outflow_l_per_min", [](const Observation& o, double) { return units::flow_to_l_per_min(o.outflow); }},
+    {"inflow_l_per_min", [](const Observation& o, double) { return units::flow_to_l_per_min(o.inflow); }},
+    {"hydraulic_power_mW",
+     [](const Observation& o, double) { return units::power_to_mW(o.hydraulic_power); }},
+    {"holder_power_mW", [](const Observation& o, double) { return units::power_to_mW(o.energy.holder); }},
+    {"speed_max_cm_per_s", [](const Observation& o, double) { return o.speed_max; }},
+    {"clearance_min_mm", [](const Observation& o, double) { return units::length_to_mm(o.clearance_min); }},
+    {"holder_mm", [](const Observation& o, double) { return place_of(o); }},
+    {"holder_sine_mm", [](const Observation& o, double p) { return place_of(o) * 2 * std::sin(p); }},
+    {"holder_cosine_mm", [](const Observation& o, double p) { return place_of(o) * 2 * std::cos(p); }},
+    {"holder_sine_2f_mm", [](const Observation& o, double p) { return place_of(o) * 2 * std::sin(2 * p); }},
+    {"holder_cosine_2f_mm", [](const Observation& o, double p) { return place_of(o) * 2 * std::cos(2 * p); }},
+    {"holder_sine_3f_mm", [](const Observation& o, double p) { return place_of(o) * 2 * std::sin(3 * p); }},
+    {"holder_cosine_3f_mm", [](const Observation& o, double p) { return place_of(o) * 2 * std::cos(3 * p); }},
+    {"holder_force_sine_N", [](const Observation& o, double p) { return force_of(o) * 2 * std::sin(p); }},
+    {"holder_force_cosine_N", [](const Observation& o, double p) { return force_of(o) * 2 * std::cos(p); }},
+    {"actuator_power_mW",
+     [](const Observation& o, double) { return units::power_to_mW(o.holder.actuator_power); }},
+    {"electrical_power_mW",
+     [](const Observation& o, double) { return units::power_to_mW(o.holder.electrical_power); }},
+    {"film_elements", [](const Observation& o, double) { return o.film_elements; }},
+    {"film_unresolved", [](const Observation& o, double) { return film_is_unresolved(o); }},
+    {"scalar_stress_max_Pa",
+     [](const Observation& o, double) { return units::pressure_to_Pa(blood_of<&BloodStress::maximum>(o)); }},
+    {"stressed_volume_mm3",
+     [](const Observation& o, double) {
+       return units::volume_to_mm3(blood_of<&BloodStress::stressed_volume>(o));
+     }},
+    {"damage_rate_cm3_per_s",
+     [](const Observation& o, double) { return blood_of<&BloodStress::damage_rate>(o); }},
+};
+
+/// Steps are counted from the first of this march.
 void append(TimeSeries& series, const Observation& seen, double frequency) {
   series.steps.push_back(static_cast<int>(series.rows()) + 1);
   const double phase = 2 * std::numbers::pi * frequency * seen.time;
-  const double sine = 2 * std::sin(phase), cosine = 2 * std::cos(phase);
-  const double place = units::length_to_mm(seen.holder.displacement),
-               force = units::force_to_N(seen.holder.force);
-  for (const double value : {units::flow_to_l_per_min(seen.outflow),
-                             units::flow_to_l_per_min(seen.inflow),
-                             units::power_to_mW(seen.hydraulic_power),
-                             units::power_to_mW(seen.energy.holder),
-                             seen.speed_max,
-                             units::length_to_mm(seen.clearance_min),
-                             place,
-                             place * sine,
-                             place * cosine,
-                             place * 2 * std::sin(2 * phase),
-                             place * 2 * std::cos(2 * phase),
-                             place * 2 * std::sin(3 * phase),
-                             place * 2 * std::cos(3 * phase),
-                             force * sine,
-                             force * cosine,
-                             units::power_to_mW(seen.holder.actuator_power),
-                             units::power_to_mW(seen.holder.electrical_power),
-                             seen.film_elements,
-                             film_is_unresolved(seen),
-                             units::pressure_to_Pa(seen.blood.maximum),
-                             units::volume_to_mm3(seen.blood.stressed_volume),
-                             seen.blood.damage_rate})
-    series.values.push_back(value);
+  for (const Column& column : columns) series.values.push_back(column.value(seen, phase));
 }
 
 } // namespace
 
 std::vector<std::string> cycle_columns() {
-  return {"outflow_l_per_min",
-          "inflow_l_per_min",
-          "hydraulic_power_mW",
-          "holder_power_mW",
-          "speed_max_cm_per_s",
-          "clearance_min_mm",
-          "holder_mm",
-          "holder_sine_mm",
-          "holder_cosine_mm",
-          "holder_sine_2f_mm",
-          "holder_cosine_2f_mm",
-          "holder_sine_3f_mm",
-          "holder_cosine_3f_mm",
-          "holder_force_sine_N",
-          "holder_force_cosine_N",
-          "actuator_power_mW",
-          "electrical_power_mW",
-          "film_elements",
-          "film_unresolved",
-          "scalar_stress_max_Pa",
-          "stressed_volume_mm3",
-          "damage_rate_cm3_per_s"};
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.emplace_back(column.name);
+  return names;
 }
 
 bool flow_is_known(const Scene& scene, std::span<const double> flows_l_per_min) {
@@ -98,7 +102,7 @@ PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State
   const auto check = period_check(level, scene);
   try {
     const auto marcher = level.start(scene, state, timer);
-    std::vector<double> flows; // l/min, by period
+    std::vector<double> flows; // l/min, of the periods marched plainly since the smooth start
     for (int period = 1; period <= scene.time.periods && run.state == RunState::not_periodic; ++period) {
       const bool ramped = state.time < ramp_end - time_step(scene) / 2;
       check->begin(state);
@@ -109,11 +113,15 @@ PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State
         outflow += units::flow_to_l_per_min(seen.outflow) / steps;
         if (on_step) on_step(now, seen);
       });
-      flows.push_back(outflow);
+      if (!ramped) flows.push_back(outflow);
+      ++run.plain_periods;
       if (check->end(period, ramped, state))
         run.state = RunState::periodic;
+      else if (check->replaced())
+        flows.clear();
       else if (flow_is_known(scene, flows))
         run.state = RunState::settled;
+      if (check->replaced() && period < scene.time.periods) run.plain_periods = 0;
     }
     if (run.state == RunState::settled) run.reason = check->left() + ", and the mean flow is known";
     if (run.state == RunState::not_periodic)

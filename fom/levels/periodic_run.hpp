@@ -22,12 +22,13 @@ struct PeriodicRun {
   RunState state = RunState::failed;
   std::string reason;                    ///< why it failed or does not repeat, else empty
   CycleMeans cycles;                     ///< of all periods, numbered from 1, see cycle_columns
+  int plain_periods = 0;                 ///< the last ones, that follow one another without a jump
   BloodDamageLaw blood;                  ///< of the scene
   std::map<std::string, double> seconds; ///< wall time by phase, "total" among them
 };
 
-/// Whether the mean of these flows, one per period and in l/min, is known as well as the scene asks: its
-/// standard error by at least six periods.
+/// Whether the mean of these flows, one per period after the smooth start and in l/min, is known as well as
+/// the scene asks: its standard error by at least six periods.
 bool flow_is_known(const Scene& scene, std::span<const double> flows_l_per_min);
 
 /// Columns of PeriodicRun::cycles.

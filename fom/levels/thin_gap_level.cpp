@@ -1,7 +1,6 @@
 #include "fom/levels/thin_gap_level.hpp"
 
 #include "fom/levels/prepared_scene.hpp"
-#include "fom/machines/wave_pump/pump_problem.hpp"
 
 namespace undula::fom {
 namespace {
@@ -22,11 +21,7 @@ ThinGapLevel::ThinGapLevel(const Scene& scene, PhaseTimer& timer) : model_(prepa
 
 int ThinGapLevel::unknowns() const { return fom::unknowns(model_); }
 
-std::vector<std::string> ThinGapLevel::remarks(const Scene& scene, std::span<const double>) const {
-  const auto membrane = scene_profile(scene).membrane;
-  if (membrane.tip_radius == 0 && membrane.rim_radius == 0) return {};
-  return {"the profile rounds the membrane's corners, which thin gaps do not know"};
-}
+std::vector<std::string> ThinGapLevel::remarks(const Scene&, std::span<const double>) const { return {}; }
 
 State ThinGapLevel::initial_state() const { return fom::initial_state(model_); }
 

@@ -10,7 +10,8 @@
 // closes; a harmonic extension (p = 2) folds much earlier. Slopes across the component's own axis only shear
 // and count less.
 //
-// Linear in the displacement. Works on the nodes of the cut, so the two sides of a thin solid are apart.
+// Where it would fold nevertheless, unfolding.hpp corrects it. Linear in the displacement. Works on the nodes
+// of the cut, so the two sides of a thin solid are apart.
 #pragma once
 
 #include <Eigen/SparseCholesky>

@@ -103,6 +103,11 @@ Unfolding<dim> prepare_unfolding(const Discretisation<dim>& disc, const Unfoldin
 }
 
 template <int dim>
+bool needs_no_unfolding(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target) {
+  return volume_ratios<dim>(unfolding, in_a_row<dim>(target)).minCoeff() >= unfolding.settings.threshold;
+}
+
+template <int dim>
 UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target,
                         std::span<const std::vector<Point<dim>>> starts) {
   const auto& settings = unfolding.settings;
@@ -113,15 +118,24 @@ UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point
   result.smallest_ratio = ratios.minCoeff();
   if (result.smallest_ratio >= settings.threshold) return result;
 
-  Eigen::VectorXd map;
+  // The start that is farthest from a fold.
+  Eigen::VectorXd map, at_start;
   for (const auto& start : starts) {
-    map = in_a_row<dim>(start);
-    ratios = volume_ratios(unfolding, map);
-    if (ratios.minCoeff() > 0) break;
+    const Eigen::VectorXd candidate = in_a_row<dim>(start);
+    const Eigen::VectorXd volumes = volume_ratios(unfolding, candidate);
+    if (map.size() > 0 && volumes.minCoeff() <= at_start.minCoeff()) continue;
+    map = candidate;
+    at_start = volumes;
   }
-  if (!(ratios.minCoeff() > 0))
-    throw NumericsError("the map of the fluid's domain folds", "no start without a fold",
-                        "coupling = \"explicit\", which cuts anew, or less stroke");
+  Eigen::Index worst = 0;
+  if (map.size() == 0 || !(at_start.minCoeff(&worst) > 0))
+    throw NumericsError(
+        "the map of the fluid's domain folds",
+        "no start without a fold, smallest volume ratio " +
+            (map.size() > 0 ? std::to_string(at_start[worst]) + " of element " + std::to_string(worst)
+                            : std::string("unknown")),
+        "coupling = \"explicit\", which cuts anew, or a smaller time step");
+  ratios = at_start;
   const auto energy = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& volumes) {
     const Eigen::VectorXd correction = at - wanted;
     double sum = 0.5 * correction.dot(unfolding.elastic * correction);
@@ -135,12 +149,21 @@ UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point
   const double scale = wanted.template lpNorm<Eigen::Infinity>();
   double now = energy(map, ratios);
   typename Unfolding<dim>::Matrix curvature;
-  for (result.iterations = 1; result.iterations <= settings.max_iterations; ++result.iterations) {
+  for (result.iterations = 1;; ++result.iterations) {
+    if (result.iterations > settings.max_iterations)
+      throw NumericsError("the map of the fluid's domain does not settle",
+                          std::to_string(settings.max_iterations) + " iterations, smallest volume ratio " +
+                              std::to_string(ratios.minCoeff()),
+                          "a smaller time step");
     curvature = unfolding.elastic;
     Eigen::VectorXd gradient = unfolding.elastic * (map - wanted);
     add_barrier(unfolding, map, gradient, curvature);
     unfolding.factors->factorize(curvature);
     const Eigen::VectorXd step = unfolding.factors->solve(gradient);
+    if (unfolding.factors->info() != Eigen::Success || !step.allFinite())
+      throw NumericsError("the map of the fluid's domain does not settle",
+                          "its matrix has no factors at iteration " + std::to_string(result.iterations),
+                          "a smaller time step");
     const double descent = gradient.dot(step);
     double part = 1, next = now;
     Eigen::VectorXd next_ratios;
@@ -150,7 +173,7 @@ UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point
       next = energy(map - part * step, next_ratios);
       if (next <= now - 1e-4 * part * descent) break;
     }
-    if (part <= 1e-6) break;
+    if (part <= 1e-6) break; // as low as rounding lets it come
     map -= part * step;
     now = next;
     const double change =
@@ -167,6 +190,7 @@ UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point
 
 template struct Unfolding<2>;
 template Unfolding<2> prepare_unfolding(const Discretisation<2>&, const UnfoldingSettings&);
+template bool needs_no_unfolding(const Unfolding<2>&, const std::vector<Point<2>>&);
 template UnfoldedMap<2> unfold(const Unfolding<2>&, const std::vector<Point<2>>&,
                                std::span<const std::vector<Point<2>>>);
 

@@ -24,7 +24,7 @@ struct UnfoldingSettings {
   double weight = 0.1;       ///< of the barrier against the elastic energy
   double skin_penalty = 200; ///< holds the correction off the skin
   double tolerance = 1e-4;   ///< of the last change, relative to the largest displacement
-  int max_iterations = 30;
+  int max_iterations = 60;
 };
 
 template <int dim>
@@ -54,8 +54,13 @@ struct UnfoldedMap {
   double smallest_ratio = 1;            ///< of J, without the hoop's stretch
 };
 
-/// The map nearest to `target` that does not fold. `starts`: displacements to begin from, the first one
-/// without a fold is taken; one of them has to be without.
+/// Whether the target does as it is: no element resists.
+template <int dim>
+bool needs_no_unfolding(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target);
+
+/// The map nearest to `target` that does not fold. `starts`: displacements to begin from, of which the one
+/// that is farthest from a fold is taken. Throws NumericsError where all are folded, and where Newton's
+/// method does not settle.
 template <int dim>
 UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target,
                         std::span<const std::vector<Point<dim>>> starts);

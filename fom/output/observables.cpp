@@ -31,8 +31,8 @@ std::pair<double, double> extent_at(const SimplexMesh<2>& mesh, double r) {
 }
 
 struct Clearance {
-  double smallest = 0;                                       ///< cm
-  double elements = std::numeric_limits<double>::infinity(); ///< least number across a film
+  double smallest = 0;                                        ///< cm
+  double elements = std::numeric_limits<double>::quiet_NaN(); ///< across it
 };
 
 Clearance clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, int solid_unknowns) {
@@ -49,8 +49,9 @@ Clearance clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, in
       nearest = distance;
       height = plan.wall_heights[w];
     }
-    least.smallest = std::min(least.smallest, inside_outline(plan.outline, x) ? nearest : -nearest);
-    least.elements = std::min(least.elements, nearest / height);
+    const double gap = inside_outline(plan.outline, x) ? nearest : -nearest;
+    if (gap >= least.smallest) continue;
+    least = {gap, std::max(gap, 0.0) / height};
   }
   return least;
 }

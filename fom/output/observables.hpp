@@ -32,13 +32,14 @@ struct Observation {
   double inflow = 0;          ///< into the inlet, cm^3/s
   double hydraulic_power = 0; ///< head times outflow, erg/s
   EnergyTerms energy;
-  double speed_max = 0;           ///< cm/s
-  double wall_shear_max = 0;      ///< dyn/cm^2, over the housing and stator
-  double wall_shear_mean = 0;     ///< dyn/cm^2, area mean
-  std::vector<double> wall_shear; ///< dyn/cm^2, by wall of the plan; 0 where a solid covers it
-  BloodStress blood;
+  double speed_max = 0;             ///< cm/s
+  double wall_shear_max = 0;        ///< dyn/cm^2, over the housing and stator
+  double wall_shear_mean = 0;       ///< dyn/cm^2, area mean
+  std::vector<double> wall_shear;   ///< dyn/cm^2, by wall of the plan; 0 where a solid covers it
+  std::optional<BloodStress> blood; ///< of pumps
   double clearance_min = 0; ///< cm, displaced skin to walls; negative where the skin has passed a wall
-  /// Elements of the background across the narrowest film, where solids move through them; NaN elsewhere.
+  /// Elements of the background across the narrowest film, 0 beyond a wall, where the solids of a pump move
+  /// through them; NaN elsewhere.
   double film_elements = std::numeric_limits<double>::quiet_NaN();
   double tip_displacement = 0; ///< cm, axial, innermost probe
   HolderObservation holder;

@@ -1,6 +1,8 @@
 // The time series of a run: one row of surface units per step, and what a period of it says.
 #pragma once
 
+#include <limits>
+
 #include "fom/output/observables.hpp"
 #include "fom/output/time_series.hpp"
 

@@ -20,17 +20,19 @@ public:
   /// count.
   void add(int step, std::span<const double> shear);
 
+  int period() const { return period_; } ///< the last whole one, from 1; 0: none yet
   bool has_period() const { return !mean_.empty(); }
   const std::vector<double>& mean() const { return mean_; } ///< dyn/cm^2, of the last whole period
   const std::vector<double>& maximum() const { return maximum_; }
 
 private:
   int steps_per_period_;
+  int period_ = 0;
   int seen_ = 0; ///< steps of the present period; 0: it has not begun
   std::vector<double> sum_, greatest_, mean_, maximum_;
 };
 
-/// "r_mm,z_mm,length_mm,mean_dyn_per_cm2,max_dyn_per_cm2" by wall element, in one step.
+/// "period,r_mm,z_mm,length_mm,mean_dyn_per_cm2,max_dyn_per_cm2" by wall element, in one step.
 void write_wall_shear(const WallShearMap& map, std::span<const std::array<Point<2>, 2>> walls,
                       const std::filesystem::path& file);
 

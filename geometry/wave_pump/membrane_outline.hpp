@@ -19,8 +19,12 @@ struct MembraneOutline {
 };
 MembraneOutline membrane_outline(const MembraneProfile& membrane);
 
-/// Largest radius that the corners of an end can have: nine tenths of what half of its thickness,
-/// or the side up to the next point of the thickness or the clamp radius, leaves room for. cm.
+/// Part of the largest radius below which a corner counts as sharp: its chords would be far below any
+/// element.
+constexpr double smallest_corner = 0.05;
+
+/// Largest radius that the corners of an end can have, cm: nine tenths of what half of its thickness leaves
+/// room for, or the side up to the next point of the thickness or the clamp radius.
 double largest_tip_radius(const MembraneProfile& membrane);
 double largest_rim_radius(const MembraneProfile& membrane);
 

@@ -73,8 +73,11 @@ RunRecord record_run(FiniteElementLevel& level, const Scene& scene, const AfterS
       static_cast<std::size_t>(plan.snapshots_per_period) * static_cast<std::size_t>(plan.sampled_periods),
       {}};
   const MPI_Comm comm = level.prepared().operators.comm;
+  // A projection needs the periodic state, and not its mean flow alone.
+  Scene to_the_end = scene;
+  to_the_end.time.flow_error = 0;
   State state = level.initial_state();
-  PeriodicRun run = march_until_periodic(level, scene, state, [&](const State& now, const Observation&) {
+  PeriodicRun run = march_until_periodic(level, to_the_end, state, [&](const State& now, const Observation&) {
     if (after_step) after_step(comm);
     sampler.take(now);
   });

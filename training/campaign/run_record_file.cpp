@@ -28,7 +28,7 @@ std::string name_of(RunState state) {
 RunState state_of(const std::string& seen, const std::filesystem::path& file) {
   for (const auto& [value, name] : state_names)
     if (seen == name) return value;
-  throw InputError("unknown state of a run", seen, "periodic, not periodic, failed", file.string());
+  throw InputError("unknown state of a run", seen, "periodic, settled, not periodic, failed", file.string());
 }
 
 OperatingPoint read_point(const Hdf5File& file) {

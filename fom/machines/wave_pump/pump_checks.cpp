@@ -120,9 +120,9 @@ void check_clamp_radius(const Scene& scene, double inner, double outer, const st
 void round_corners(const Scene& scene, PumpProfile& profile) {
   const auto round = [&](const std::string& key, double stated, double largest, double& radius) {
     if (stated <= 0) return;
-    if (stated > largest)
+    if (stated > largest || stated < smallest_corner * largest)
       throw InputError("the membrane's corners cannot have this radius", key + " = " + mm(stated),
-                       "0 (as in the profile) to " + mm(largest),
+                       "0 (as in the profile), or " + mm(smallest_corner * largest) + " to " + mm(largest),
                        place_of_key(scene, "membrane." + key, name_of(scene)));
     radius = stated;
   };
@@ -235,6 +235,9 @@ std::vector<std::string> profile_differences(const Scene& scene) {
                             stated.key + " = " + plain_number(stated.value) + "; what counts is " +
                             scene_key + " = " + plain_number(value) + " of the scene");
     }
+  if (scene.space == Space::thin_gap && (profile.membrane.tip_radius > 0 || profile.membrane.rim_radius > 0))
+    sentences.push_back(profile.file.string() +
+                        " rounds the membrane's corners, which thin gaps do not know");
   return sentences;
 }
 

@@ -18,6 +18,10 @@ PumpProfile scene_profile(const Scene& scene) {
   if (scene.clamp_radius > 0)
     check_clamp_radius(scene, profile.membrane.inner_radius, profile.membrane.outer_radius,
                        "the membrane has");
+  // The mesh keeps a line where the motion is imposed from.
+  const double clamp = scene.clamp_radius;
+  if (clamp > profile.membrane.inner_radius && std::abs(clamp - profile.membrane.clamp_radius) > 1e-9 * clamp)
+    profile.membrane.clamp_radius = clamp;
   round_corners(scene, profile);
   return profile;
 }
@@ -49,10 +53,6 @@ PumpMeshes pump_meshes(const Scene& scene) {
   }
   auto profile = scene_profile(scene);
   check_pump_work(scene, profile);
-  // The mesh keeps a line where the motion is imposed from.
-  const double clamp = scene.clamp_radius;
-  if (clamp > profile.membrane.inner_radius && std::abs(clamp - profile.membrane.clamp_radius) > 1e-9 * clamp)
-    profile.membrane.clamp_radius = clamp;
   const PumpMeshSizes sizes{scene.mesh.gap_elements, scene.mesh.channel_size, scene.mesh.membrane_size,
                             scene.mesh.growth};
   meshes.background = pump_background(profile, sizes, refinement_boxes(scene.problem));

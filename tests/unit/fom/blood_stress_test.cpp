@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "fom/output/wall_shear_map.hpp"
 #include "tests/verification/support/channel_problem.hpp"
@@ -70,6 +71,7 @@ TEST(WallShearMap, KeepsTheLastWholePeriod) {
   EXPECT_FALSE(map.has_period());
   add(6, 6, 0);
   ASSERT_TRUE(map.has_period());
+  EXPECT_EQ(map.period(), 2);
   EXPECT_EQ(map.mean()[0], 3);
   EXPECT_EQ(map.mean()[1], 3);
   EXPECT_EQ(map.maximum()[0], 6);

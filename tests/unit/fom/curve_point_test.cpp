@@ -13,6 +13,7 @@ PeriodicRun four_periods(RunState state) {
   PeriodicRun record;
   record.state = state;
   record.seconds["total"] = 1;
+  record.plain_periods = 4;
   record.cycles.columns = {"outflow_l_per_min", "inflow_l_per_min", "hydraulic_power_mW",
                            "speed_max_cm_per_s", "clearance_min_mm"};
   const std::vector<double> flows = {4, 1, 2, 3};
@@ -40,8 +41,19 @@ TEST(CurvePoint, OfAPeriodicRunIsItsLastPeriod) {
   EXPECT_TRUE(std::isnan(point.holder_power_mW)); // not recorded
 }
 
-TEST(CurvePoint, OfARunThatDoesNotRepeatIsTheMeanOfTheLastPeriods) {
-  const CurvePoint point = curve_point(four_periods(RunState::not_periodic), 40);
+TEST(CurvePoint, OfARunThatDoesNotRepeatCountsWhatItsTransientLeaves) {
+  PeriodicRun record = four_periods(RunState::not_periodic);
+  const CurvePoint point = curve_point(record, 40);
+  EXPECT_EQ(point.averaged_periods, 3);
+  EXPECT_EQ(point.spread_l_per_min, 2);
+  // s / sqrt(3) = 1 / sqrt(3), neighbours correlate by 0 + 1 / 3: times sqrt(2).
+  EXPECT_NEAR(point.standard_error_l_per_min, std::sqrt(2.0 / 3), 1e-12);
+  // Two periods after a jump: no mean, the last one.
+  record.plain_periods = 2;
+  const CurvePoint jumped = curve_point(record, 40);
+  EXPECT_EQ(jumped.flow_l_per_min, 3);
+  EXPECT_EQ(jumped.averaged_periods, 1);
+  EXPECT_TRUE(std::isnan(jumped.standard_error_l_per_min));
   EXPECT_EQ(point.flow_l_per_min, 2);
   EXPECT_EQ(point.inflow_l_per_min, 12);
   EXPECT_EQ(point.speed_max_cm_per_s, 105);

@@ -317,7 +317,7 @@ TEST(Unfolding, BeginsWithoutAJump) {
   std::printf("corrected in %d steps, the correction changes by at most %.2f of the way of the plate\n",
               corrected, greatest_jump);
   EXPECT_GT(corrected, 20);
-  EXPECT_LT(greatest_jump, 1.0);
+  EXPECT_LT(greatest_jump, 0.3);
 }
 
 TEST(Unfolding, RefusesAStartThatIsFolded) {
