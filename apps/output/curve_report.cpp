@@ -198,6 +198,8 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
                      {"stroke_2f_mm", finite_or_null(point.stroke_2f_mm)},
                      {"stroke_3f_mm", finite_or_null(point.stroke_3f_mm)},
                      {"phase_degrees", finite_or_null(point.phase_degrees)},
+                     {"phase_2f_degrees", finite_or_null(point.phase_2f_degrees)},
+                     {"phase_3f_degrees", finite_or_null(point.phase_3f_degrees)},
                      {"offset_mm", finite_or_null(point.offset_mm)},
                      {"reaction_in_phase_N_per_mm", finite_or_null(point.reaction_in_phase_N_per_mm)},
                      {"reaction_quadrature_N_per_mm", finite_or_null(point.reaction_quadrature_N_per_mm)},

@@ -26,7 +26,9 @@ struct CurvePoint {
   double stroke_mm = unknown;                ///< amplitude of the holder's fundamental
   double stroke_2f_mm = unknown, stroke_3f_mm = unknown; ///< of its parts at twice and three times f
   double phase_degrees = unknown;                        ///< of the holder behind the drive
-  double offset_mm = unknown;                            ///< mean displacement of the holder
+  double phase_2f_degrees = unknown,
+         phase_3f_degrees = unknown; ///< the same of the parts, in their own periods
+  double offset_mm = unknown;        ///< mean displacement of the holder
   /// Force of the holder on membrane and fluid per stroke, fundamentals: in phase with the displacement and
   /// a quarter of a period ahead of it.
   double reaction_in_phase_N_per_mm = unknown, reaction_quadrature_N_per_mm = unknown;

@@ -129,11 +129,16 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   const std::complex<double> holder(mean("holder_sine_mm"), mean("holder_cosine_mm"));
   const std::complex<double> force(mean("holder_force_sine_N"), mean("holder_force_cosine_N"));
   point.stroke_mm = std::abs(holder);
-  point.stroke_2f_mm = std::hypot(mean("holder_sine_2f_mm"), mean("holder_cosine_2f_mm"));
-  point.stroke_3f_mm = std::hypot(mean("holder_sine_3f_mm"), mean("holder_cosine_3f_mm"));
+  const std::complex<double> second(mean("holder_sine_2f_mm"), mean("holder_cosine_2f_mm")),
+      third(mean("holder_sine_3f_mm"), mean("holder_cosine_3f_mm"));
+  point.stroke_2f_mm = std::abs(second);
+  point.stroke_3f_mm = std::abs(third);
   point.offset_mm = mean("holder_mm");
   if (point.stroke_mm > 0) {
-    point.phase_degrees = -std::arg(holder) * 180 / std::numbers::pi;
+    constexpr double degrees = 180 / std::numbers::pi;
+    point.phase_degrees = -std::arg(holder) * degrees;
+    point.phase_2f_degrees = -std::arg(second) * degrees;
+    point.phase_3f_degrees = -std::arg(third) * degrees;
     if (std::abs(force) > 0) {
       point.reaction_in_phase_N_per_mm = (force / holder).real();
       point.reaction_quadrature_N_per_mm = (force / holder).imag();

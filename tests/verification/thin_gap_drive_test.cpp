@@ -129,11 +129,19 @@ TEST(VoltageDrive, HarmonicsMakeUpTheMotion) {
     const auto result = run(pump_by_voltage(), more);
     const CurvePoint& point = result.point;
     const int counted = 72 * point.averaged_periods;
-    double mean = 0, square = 0;
+    const auto part = [&](double amplitude, double phase_degrees, int n, double time) { // of the motion, mm
+      return amplitude *
+             std::sin(2 * std::numbers::pi * 120 * n * time - phase_degrees * std::numbers::pi / 180);
+    };
+    double mean = 0, square = 0, greatest_left = 0;
     for (auto step = result.steps.end() - counted; step != result.steps.end(); ++step) {
       const double place = 10 * step->holder.displacement; // mm
       mean += place / counted;
       square += place * place / counted;
+      const double told_here = point.offset_mm + part(point.stroke_mm, point.phase_degrees, 1, step->time) +
+                               part(point.stroke_2f_mm, point.phase_2f_degrees, 2, step->time) +
+                               part(point.stroke_3f_mm, point.phase_3f_degrees, 3, step->time);
+      greatest_left = std::max(greatest_left, std::abs(place - told_here));
     }
     const double variance = square - mean * mean;
     const double told = 0.5 * (std::pow(point.stroke_mm, 2) + std::pow(point.stroke_2f_mm, 2) +
@@ -141,6 +149,8 @@ TEST(VoltageDrive, HarmonicsMakeUpTheMotion) {
     std::printf("stroke %.4f mm, at 2 f %.4f, at 3 f %.4f: %.4f %% of the motion is beyond them\n",
                 point.stroke_mm, point.stroke_2f_mm, point.stroke_3f_mm, 100 * (1 - told / variance));
     EXPECT_NEAR(told / variance, 1, 1e-3);
+    // Amplitudes and phases put together are the motion itself.
+    EXPECT_LT(greatest_left, 0.06 * point.stroke_mm);
     EXPECT_NEAR(point.offset_mm, mean, 1e-12);
     return point;
   };
