@@ -29,17 +29,7 @@ WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactS
   WallContact<dim> contact;
   contact.settings = settings;
   contact.axisymmetric = disc.problem.space == Space::axisymmetric;
-  const auto facets = build_facet_table(disc.problem.background);
-  for (const auto& facet : facets.facets) {
-    if (facet.cells[1] >= 0) continue;
-    const auto& condition =
-        disc.problem.boundary.at(disc.problem.background.boundary_names[facet.boundary_tag]);
-    if (condition.kind != BoundaryCondition<dim>::Kind::velocity) continue;
-    auto& wall = contact.walls.emplace_back();
-    for (int i = 0; i < dim; ++i) wall.points[i] = disc.problem.background.points[facet.points[i]];
-    wall.normal =
-        barycentric_gradients(disc.problem.background, facet.cells[0]).col(facet.local[0]).normalized();
-  }
+  contact.walls = boundary_walls(disc.problem);
   std::map<int, int> index_of; // by unknown; -1: takes no part
   const auto skin_node = [&](int solid, int node) {
     const int unknown = disc.solid_unknown(solid, node, 0);

@@ -9,6 +9,7 @@
 
 #include "fom/assembly/sparse.hpp"
 #include "fom/problem/stepping.hpp"
+#include "fom/space/boundary_walls.hpp"
 #include "fom/space/discretisation.hpp"
 
 namespace undula::fom {
@@ -31,11 +32,7 @@ struct WallContact {
     std::array<int, 3> nodes; ///< first, last, middle: index into `skin`, -1: takes no part
   };
   std::vector<SkinEdge> edges;
-  struct Wall {
-    std::array<Point<dim>, dim> points;
-    Point<dim> normal; ///< into the fluid
-  };
-  std::vector<Wall> walls; ///< boundary facets with imposed velocity
+  std::vector<BoundaryWall<dim>> walls;
 };
 
 template <int dim>

@@ -35,9 +35,7 @@ MovingStepper<dim>::MovingStepper(Discretisation<dim>& disc, Operators<dim>& ope
 template <int dim>
 void MovingStepper<dim>::restore(const State& state) {
   if (coupling_ == Coupling::mapped) {
-    disc_.map = {};
-    for (Eigen::Index at = 0; at < state.map[0].size(); at += dim)
-      disc_.map.displacement.push_back(state.map[0].template segment<dim>(at));
+    disc_.map = {by_node<dim>(state.map[0]), {}};
     disc_.map.velocity.assign(disc_.map.displacement.size(), Point<dim>::Zero());
   } else {
     const auto scope = timer_.measure("cut");
@@ -118,16 +116,13 @@ void MovingStepper<dim>::place_cut(const Eigen::VectorXd& placement, const State
 template <int dim>
 std::vector<Point<dim>> MovingStepper<dim>::unfolded(const std::vector<Point<dim>>& target,
                                                      const Eigen::VectorXd& last, const State& before) {
-  if (needs_no_unfolding(*unfolding_, target)) return target;
-  std::vector<std::vector<Point<dim>>> starts(1, std::vector<Point<dim>>(target.size()));
-  for (std::size_t node = 0; node < target.size(); ++node)
-    starts[0][node] = last.segment<dim>(static_cast<Eigen::Index>(node) * dim);
-  if (before.placement.size() > 0) { // the correction of the step before
-    const auto extended = extend(*extension_, before.placement);
-    auto moved = target;
-    for (std::size_t node = 0; node < target.size(); ++node) moved[node] += starts[0][node] - extended[node];
-    starts.insert(starts.begin(), std::move(moved));
-  }
+  const auto starts = [&] {
+    std::vector<Eigen::VectorXd> places;
+    if (before.placement.size() > 0) // with the correction of the step before
+      places.push_back(in_a_row<dim>(target) + last - in_a_row<dim>(extend(*extension_, before.placement)));
+    places.push_back(last);
+    return places;
+  };
   auto map = unfold<dim>(*unfolding_, target, starts);
   report_.unfolding_iterations = std::max(report_.unfolding_iterations, map.iterations);
   return std::move(map.displacement);
@@ -147,16 +142,9 @@ void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, 
   };
   const Eigen::VectorXd last = level_before(0), older = level_before(1);
   map.displacement = unfolded(extend(*extension_, placement), last, before);
-  map.velocity.resize(map.displacement.size());
   state.map[1] = last;
-  state.map[0].resize(length);
-  for (std::size_t node = 0; node < map.displacement.size(); ++node) {
-    const auto at = static_cast<Eigen::Index>(node) * dim;
-    state.map[0].template segment<dim>(at) = map.displacement[node];
-    map.velocity[node] = (alpha[0] * map.displacement[node] + alpha[1] * last.template segment<dim>(at) +
-                          alpha[2] * older.template segment<dim>(at)) /
-                         dt;
-  }
+  state.map[0] = in_a_row<dim>(map.displacement);
+  map.velocity = by_node<dim>((alpha[0] * state.map[0] + alpha[1] * last + alpha[2] * older) / dt);
   const auto smallest = smallest_volume(disc_);
   report_.smallest_volume_ratio = std::min(report_.smallest_volume_ratio, smallest.ratio);
   if (smallest.ratio <= 0)

@@ -131,7 +131,7 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
   view.rows.general = prepared_->observation.general.columns;
   view.rows.recut = view.rows.pump && (coupling_ == Coupling::explicit_ || coupling_ == Coupling::implicit);
   view.rows.blood = prepared_->observation.blood.has_value();
-  view.walls = prepared_->observation.walls;
+  for (const auto& wall : prepared_->observation.walls) view.walls.push_back(wall.points);
   view.rows.voltage = scene.operating_point.drive == Drive::voltage;
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;

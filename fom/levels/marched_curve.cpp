@@ -94,13 +94,9 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   if (run.state == RunState::failed || periods == 0) return point;
 
   // Of a state that does not repeat, the periods that its transient leaves.
-  std::vector<double> flows;
-  const auto flow_column = static_cast<std::size_t>(std::ranges::find(cycles.columns, "outflow_l_per_min") -
-                                                    cycles.columns.begin());
+  const auto flows = period_means(cycles, "outflow_l_per_min");
   const auto plain = std::min(periods, static_cast<std::size_t>(std::max(run.plain_periods, 1)));
-  for (std::size_t period = periods - plain; period < periods; ++period)
-    flows.push_back(cycles.mean[period * cycles.columns.size() + flow_column]);
-  const SettledMean settled = settled_mean(flows);
+  const SettledMean settled = settled_mean(std::span(flows).last(plain));
   const std::size_t averaged = point.periodic ? 1 : static_cast<std::size_t>(settled.counted);
   const auto last_of = [&](const std::vector<double>& values, const char* name) {
     const auto column = static_cast<std::size_t>(

@@ -16,7 +16,7 @@ namespace {
 
 /// 1 where the narrowest film has too few elements, else 0; NaN where that is not known.
 double film_is_unresolved(const Observation& seen) {
-  return std::isnan(seen.film_elements) ? seen.film_elements : seen.film_elements < resolved_film_elements;
+  return std::isnan(seen.film_elements) ? seen.film_elements : !film_is_resolved(seen.film_elements);
 }
 
 double place_of(const Observation& seen) { return units::length_to_mm(seen.holder.displacement); }

@@ -15,14 +15,6 @@ template <int dim>
 using Gradient = Eigen::Matrix<double, dim, dim + 1>;
 
 template <int dim>
-Eigen::VectorXd in_a_row(const std::vector<Point<dim>>& values) {
-  Eigen::VectorXd row(static_cast<Eigen::Index>(values.size()) * dim);
-  for (std::size_t node = 0; node < values.size(); ++node)
-    row.segment<dim>(static_cast<Eigen::Index>(node) * dim) = values[node];
-  return row;
-}
-
-template <int dim>
 Eigen::Matrix<double, dim, dim> deformation(const typename Unfolding<dim>::Element& element,
                                             const Eigen::VectorXd& map) {
   Eigen::Matrix<double, dim, dim> F = Eigen::Matrix<double, dim, dim>::Identity();
@@ -103,13 +95,8 @@ Unfolding<dim> prepare_unfolding(const Discretisation<dim>& disc, const Unfoldin
 }
 
 template <int dim>
-bool needs_no_unfolding(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target) {
-  return volume_ratios<dim>(unfolding, in_a_row<dim>(target)).minCoeff() >= unfolding.settings.threshold;
-}
-
-template <int dim>
 UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target,
-                        std::span<const std::vector<Point<dim>>> starts) {
+                        const std::function<std::vector<Eigen::VectorXd>()>& starts) {
   const auto& settings = unfolding.settings;
   UnfoldedMap<dim> result;
   result.displacement = target;
@@ -120,8 +107,7 @@ UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point
 
   // The start that is farthest from a fold.
   Eigen::VectorXd map, at_start;
-  for (const auto& start : starts) {
-    const Eigen::VectorXd candidate = in_a_row<dim>(start);
+  for (const Eigen::VectorXd& candidate : starts()) {
     const Eigen::VectorXd volumes = volume_ratios(unfolding, candidate);
     if (map.size() > 0 && volumes.minCoeff() <= at_start.minCoeff()) continue;
     map = candidate;
@@ -183,15 +169,13 @@ UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point
       break;
   }
   result.smallest_ratio = ratios.minCoeff();
-  for (std::size_t node = 0; node < target.size(); ++node)
-    result.displacement[node] = map.segment<dim>(static_cast<Eigen::Index>(node) * dim);
+  result.displacement = by_node<dim>(map);
   return result;
 }
 
 template struct Unfolding<2>;
 template Unfolding<2> prepare_unfolding(const Discretisation<2>&, const UnfoldingSettings&);
-template bool needs_no_unfolding(const Unfolding<2>&, const std::vector<Point<2>>&);
 template UnfoldedMap<2> unfold(const Unfolding<2>&, const std::vector<Point<2>>&,
-                               std::span<const std::vector<Point<2>>>);
+                               const std::function<std::vector<Eigen::VectorXd>()>&);
 
 } // namespace undula::fom

@@ -11,8 +11,8 @@
 
 #include <Eigen/SparseCholesky>
 #include <array>
+#include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "fom/space/discretisation.hpp"
@@ -54,15 +54,11 @@ struct UnfoldedMap {
   double smallest_ratio = 1;            ///< of J, without the hoop's stretch
 };
 
-/// Whether the target does as it is: no element resists.
-template <int dim>
-bool needs_no_unfolding(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target);
-
-/// The map nearest to `target` that does not fold. `starts`: displacements to begin from, of which the one
-/// that is farthest from a fold is taken. Throws NumericsError where all are folded, and where Newton's
-/// method does not settle.
+/// The map nearest to `target` that does not fold. `starts`, asked for where an element resists, gives
+/// displacements to begin from, of which the one that is farthest from a fold is taken. Throws NumericsError
+/// where all are folded, and where Newton's method does not settle.
 template <int dim>
 UnfoldedMap<dim> unfold(const Unfolding<dim>& unfolding, const std::vector<Point<dim>>& target,
-                        std::span<const std::vector<Point<dim>>> starts);
+                        const std::function<std::vector<Eigen::VectorXd>()>& starts);
 
 } // namespace undula::fom

@@ -43,11 +43,11 @@ Clearance clearance(const ObservationPlan<2>& plan, const Eigen::VectorXd& d, in
   for (std::size_t i = 0; i < plan.skin_unknowns.size(); ++i) {
     const Point<2> x = plan.skin_positions[i] + moved.segment<2>(plan.skin_unknowns[i]);
     double nearest = std::numeric_limits<double>::infinity(), height = 1;
-    for (std::size_t w = 0; w < plan.walls.size(); ++w) {
-      const double distance = distance_to_segment<2>(plan.walls[w][0], plan.walls[w][1], x);
+    for (const auto& wall : plan.walls) {
+      const double distance = distance_to_segment<2>(wall.points[0], wall.points[1], x);
       if (distance >= nearest) continue;
       nearest = distance;
-      height = plan.wall_heights[w];
+      height = wall.height;
     }
     const double gap = inside_outline(plan.outline, x) ? nearest : -nearest;
     if (gap >= least.smallest) continue;
@@ -136,18 +136,10 @@ ObservationPlan<dim> plan_observation(const Discretisation<dim>& disc, int probe
     for (int a = 0; a < dim; ++a) simplex[a] = disc.problem.background.points[facet.points[a]];
     plan.outline.push_back({simplex[0], simplex[1]});
   }
-  for (const auto& facet : build_facet_table(disc.problem.background).facets) {
-    plan.wall_of_facet.push_back(-1);
-    if (facet.cells[1] >= 0) continue;
-    const auto& condition =
-        disc.problem.boundary.at(disc.problem.background.boundary_names[facet.boundary_tag]);
-    if (condition.kind != BoundaryCondition<dim>::Kind::velocity) continue;
-    plan.wall_of_facet.back() = static_cast<int>(plan.walls.size());
-    auto& wall = plan.walls.emplace_back();
-    for (int a = 0; a < dim; ++a) wall[a] = disc.problem.background.points[facet.points[a]];
-    plan.wall_heights.push_back(
-        1 / barycentric_gradients(disc.problem.background, facet.cells[0]).col(facet.local[0]).norm());
-  }
+  plan.walls = boundary_walls(disc.problem);
+  plan.wall_of_facet.assign(disc.cut.facets.facets.size(), -1);
+  for (std::size_t w = 0; w < plan.walls.size(); ++w)
+    plan.wall_of_facet[static_cast<std::size_t>(plan.walls[w].facet)] = static_cast<int>(w);
   return plan;
 }
 

@@ -8,6 +8,7 @@
 #include "fom/output/blood_stress.hpp"
 #include "fom/output/holder_observation.hpp"
 #include "fom/scene/general_observables.hpp"
+#include "fom/space/boundary_walls.hpp"
 #include "geometry/mesh/segments.hpp"
 
 namespace undula::fom {
@@ -48,20 +49,19 @@ struct Observation {
 };
 
 /// A film with fewer elements across it is not resolved: docs/moving.md.
-constexpr double resolved_film_elements = 4;
+inline bool film_is_resolved(double elements) { return elements >= 4; }
 
 /// Precomputed geometry of the observables.
 template <int dim>
 struct ObservationPlan {
   MembraneProbes probes;
   std::vector<int> skin_unknowns; ///< component 0 of the skin's nodes, counted from the solids' first unknown
-  std::vector<Point<dim>> skin_positions;         ///< at rest, cm
-  std::vector<std::array<Point<dim>, dim>> walls; ///< boundary simplices with imposed velocity
-  std::vector<double> wall_heights;               ///< of the element on each of them, across it, cm
-  std::vector<Segment<dim>> outline;              ///< all boundary simplices
-  std::vector<int> wall_of_facet;                 ///< by facet of the background: its place in `walls`, or -1
-  std::optional<BloodDamageLaw> blood;            ///< nothing: not observed
-  GeneralObservables general;                     ///< empty but for scenes that state their problem
+  std::vector<Point<dim>> skin_positions; ///< at rest, cm
+  std::vector<BoundaryWall<dim>> walls;
+  std::vector<Segment<dim>> outline;   ///< all boundary simplices
+  std::vector<int> wall_of_facet;      ///< by facet of the background: its place in `walls`, or -1
+  std::optional<BloodDamageLaw> blood; ///< nothing: not observed
+  GeneralObservables general;          ///< empty but for scenes that state their problem
 };
 
 /// No probes for `probe_count` 0.

@@ -192,7 +192,7 @@ std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_
       period.film_elements_min = extremes("film_elements").first;
       int thin = 0;
       for (std::size_t row = begin; row < begin + length; ++row)
-        thin += value(row, "film_elements") < resolved_film_elements;
+        thin += !film_is_resolved(value(row, "film_elements"));
       period.film_unresolved_percent = 100.0 * thin / steps_per_period;
     }
     periods.push_back(period);

@@ -189,6 +189,15 @@ CycleMeans summarise_cycles(const TimeSeries& table, int steps_per_period) {
   return cycles;
 }
 
+std::vector<double> period_means(const CycleMeans& cycles, const std::string& column) {
+  const auto width = cycles.columns.size();
+  const auto place = static_cast<std::size_t>(
+      std::find(cycles.columns.begin(), cycles.columns.end(), column) - cycles.columns.begin());
+  std::vector<double> means;
+  for (std::size_t at = place; at < cycles.mean.size(); at += width) means.push_back(cycles.mean[at]);
+  return means;
+}
+
 void write_cycle_means(const CycleMeans& cycles, const std::filesystem::path& file) {
   std::string text = "period";
   for (const auto& column : cycles.columns) text += ",mean_" + column + ",min_" + column + ",max_" + column;

@@ -69,6 +69,9 @@ struct CycleMeans {
 /// The column "time_s" is left out.
 CycleMeans summarise_cycles(const TimeSeries& table, int steps_per_period);
 
+/// Means of one column, by period. `cycles` holds the column.
+std::vector<double> period_means(const CycleMeans& cycles, const std::string& column);
+
 /// Writes "period,mean_<column>,min_<column>,max_<column>,..." in one step, so that the file is whole at any
 /// time.
 void write_cycle_means(const CycleMeans& cycles, const std::filesystem::path& file);

@@ -16,4 +16,22 @@ struct DomainMap {
   bool is_identity() const { return displacement.empty(); }
 };
 
+/// Nodal vectors in a row, component after component, as a state keeps them.
+template <int dim>
+Eigen::VectorXd in_a_row(const std::vector<Point<dim>>& values) {
+  Eigen::VectorXd row(static_cast<Eigen::Index>(values.size()) * dim);
+  for (std::size_t node = 0; node < values.size(); ++node)
+    row.segment<dim>(static_cast<Eigen::Index>(node) * dim) = values[node];
+  return row;
+}
+
+/// The other way.
+template <int dim>
+std::vector<Point<dim>> by_node(const Eigen::VectorXd& row) {
+  std::vector<Point<dim>> values;
+  values.reserve(static_cast<std::size_t>(row.size() / dim));
+  for (Eigen::Index at = 0; at < row.size(); at += dim) values.push_back(row.segment<dim>(at));
+  return values;
+}
+
 } // namespace undula::fom

@@ -19,13 +19,17 @@ struct MembraneOutline {
 };
 MembraneOutline membrane_outline(const MembraneProfile& membrane);
 
-/// Part of the largest radius below which a corner counts as sharp: its chords would be far below any
-/// element.
-constexpr double smallest_corner = 0.05;
-
 /// Largest radius that the corners of an end can have, cm: nine tenths of what half of its thickness leaves
 /// room for, or the side up to the next point of the thickness or the clamp radius.
 double largest_tip_radius(const MembraneProfile& membrane);
 double largest_rim_radius(const MembraneProfile& membrane);
+
+/// Least radius of a corner that is not sharp: its chords would be far below any element.
+inline double smallest_corner_radius(double largest) { return 0.05 * largest; }
+
+/// Whether a corner that is not sharp may have this radius.
+inline bool corner_fits(double radius, double largest) {
+  return radius >= smallest_corner_radius(largest) && radius <= largest;
+}
 
 } // namespace undula::geometry

@@ -3,6 +3,7 @@
 #include <CGAL/Polygon_2_algorithms.h>
 
 #include <sstream>
+#include <tuple>
 
 #include "geometry/mesh/outline_faults.hpp"
 #include "geometry/wave_pump/membrane_outline.hpp"
@@ -154,11 +155,12 @@ private:
     for (const auto& [name, radius, largest] :
          {std::tuple{"tip", membrane.tip_radius, largest_tip_radius(membrane)},
           std::tuple{"rim", membrane.rim_radius, largest_rim_radius(membrane)}})
-      if (radius != 0 && !(radius >= smallest_corner * largest && radius <= largest))
-        throw InputError(std::string("the corners of the membrane's ") + name + " cannot have this radius",
-                         text(radius) + " cm",
-                         "0 (sharp), or " + text(smallest_corner * largest) + " to " + text(largest) + " cm",
-                         where(membrane.line));
+      if (radius != 0 && !corner_fits(radius, largest))
+        throw InputError(
+            std::string("the corners of the membrane's ") + name + " cannot have this radius",
+            text(radius) + " cm",
+            "0 (sharp), or " + text(smallest_corner_radius(largest)) + " to " + text(largest) + " cm",
+            where(membrane.line));
   }
 
   static std::vector<Edge> fluid_edges(const FluidOutline& outline) {

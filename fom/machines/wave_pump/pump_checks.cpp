@@ -120,10 +120,11 @@ void check_clamp_radius(const Scene& scene, double inner, double outer, const st
 void round_corners(const Scene& scene, PumpProfile& profile) {
   const auto round = [&](const std::string& key, double stated, double largest, double& radius) {
     if (stated <= 0) return;
-    if (stated > largest || stated < smallest_corner * largest)
-      throw InputError("the membrane's corners cannot have this radius", key + " = " + mm(stated),
-                       "0 (as in the profile), or " + mm(smallest_corner * largest) + " to " + mm(largest),
-                       place_of_key(scene, "membrane." + key, name_of(scene)));
+    if (!corner_fits(stated, largest))
+      throw InputError(
+          "the membrane's corners cannot have this radius", key + " = " + mm(stated),
+          "0 (as in the profile), or " + mm(smallest_corner_radius(largest)) + " to " + mm(largest),
+          place_of_key(scene, "membrane." + key, name_of(scene)));
     radius = stated;
   };
   auto& membrane = profile.membrane;

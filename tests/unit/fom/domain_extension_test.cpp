@@ -261,7 +261,7 @@ TEST(Unfolding, OpensWhatAMapFolds) {
   Map last(disc.fluid_nodes.dof_point.size(), Point<2>::Zero());
   for (const double part : {0.3, 0.6, 0.8, 0.9, 0.95}) {
     const Map target = folding_target(disc, plain, part);
-    const std::vector<Map> starts = {last};
+    const auto starts = [&] { return std::vector{in_a_row<2>(last)}; };
     const auto map = unfold<2>(unfolding, target, starts);
     disc.map.displacement = target;
     const double before = smallest_volume_ratio(disc);
@@ -302,7 +302,7 @@ TEST(Unfolding, BeginsWithoutAJump) {
   constexpr double step = 0.005;
   for (double part = 0.3; part < 0.8; part += step) {
     const Map target = folding_target(disc, plain, part);
-    const std::vector<Map> starts = {last};
+    const auto starts = [&] { return std::vector{in_a_row<2>(last)}; };
     const auto map = unfold<2>(unfolding, target, starts);
     double correction = 0, way = 0;
     for (std::size_t node = 0; node < target.size(); ++node) {
@@ -324,7 +324,7 @@ TEST(Unfolding, RefusesAStartThatIsFolded) {
   const auto disc = plate_in_channel(Space::plane);
   const auto plain = prepare_extension(disc, harmonic);
   const Map target = folding_target(disc, plain, 0.9);
-  const std::vector<Map> starts = {target};
+  const auto starts = [&] { return std::vector{in_a_row<2>(target)}; };
   EXPECT_THROW(unfold<2>(prepare_unfolding(disc), target, starts), NumericsError);
 }
 
