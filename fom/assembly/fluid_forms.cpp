@@ -1,11 +1,25 @@
 #include "fom/assembly/forms.hpp"
 #include "fom/assembly/part_quadrature.hpp"
+#include "fom/space/velocity_element.hpp"
 
 namespace undula::fom {
 
 namespace {
 // P1 fields times P1 fields times r, and the smooth hoop term 1/r away from the axis.
 constexpr int volume_degree = 4;
+
+/// Adds (force, v) for a force at one point of a part.
+template <int dim>
+void add_at_point(const Discretisation<dim>& disc, int part, const Eigen::Matrix<double, dim + 1, 1>& lambda,
+                  const Point<dim>& force, Eigen::VectorXd& load) {
+  with_order(disc, [&](auto order) {
+    using Element = VelocityElement<dim, order>;
+    const auto shape = Element::values(lambda);
+    const auto nodes = Element::nodes_of(disc, part);
+    for (int i = 0; i < Element::nodes; ++i)
+      for (int c = 0; c < dim; ++c) load[disc.velocity_unknown(nodes[i], c)] += shape[i] * force[c];
+  });
+}
 } // namespace
 
 template <int dim>
@@ -87,8 +101,7 @@ Eigen::VectorXd opening_functional(const Discretisation<dim>& disc, const Share&
   const Measure measure = measure_of(disc.problem.space);
   for (const auto& piece : disc.cut.boundary) {
     if (disc.problem.background.boundary_names[piece.tag] != name) continue;
-    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
-    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[piece.part][0], 0))) continue;
     const int cell = disc.cut.parts[piece.part].cell;
     const auto& facet = disc.cut.facets.facets[piece.facet];
     // The barycentric coordinate opposite the facet decreases along the outward normal.
@@ -96,9 +109,7 @@ Eigen::VectorXd opening_functional(const Discretisation<dim>& disc, const Share&
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
       const auto& x = disc.cut.boundary_quadrature.points[q];
       const double w = disc.cut.boundary_quadrature.weights[q] * measure(x[0]);
-      const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
-      for (int i = 0; i <= dim; ++i)
-        for (int c = 0; c < dim; ++c) load[disc.velocity_unknown(nodes[i], c)] += w * lambda[i] * normal[c];
+      add_at_point<dim>(disc, piece.part, barycentric_coordinates(disc.cut.mesh, cell, x), w * normal, load);
     }
   }
   return load;
@@ -110,14 +121,11 @@ Eigen::VectorXd body_force_load(const Discretisation<dim>& disc, const Share& sh
   const auto rule = reference_rule<dim>(volume_degree + 2);
   if (disc.problem.body_force)
     for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
-      const auto& nodes = disc.fluid_nodes.part_dofs[p];
-      if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+      if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0))) continue;
       const int part = static_cast<int>(p);
       const auto geometry = part_geometry(disc, part);
       for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<dim>& x, double w) {
-        const Point<dim> force = disc.problem.body_force(x, t);
-        for (int i = 0; i <= dim; ++i)
-          for (int c = 0; c < dim; ++c) load[disc.velocity_unknown(nodes[i], c)] += w * lambda[i] * force[c];
+        add_at_point<dim>(disc, part, lambda, w * disc.problem.body_force(x, t), load);
       });
     }
   const Measure measure = measure_of(disc.problem.space);

@@ -1,27 +1,31 @@
 #include "fom/assembly/forms.hpp"
+#include "fom/space/velocity_element.hpp"
 
 namespace undula::fom {
 
-template <int dim>
-void add_interface(const Discretisation<dim>& disc, const Share& share,
-                   std::span<const PartGeometry<dim>> geometries, Triplets& consistent, Triplets& penalty) {
+namespace {
+
+template <int dim, int order>
+void add_interface_of(const Discretisation<dim>& disc, const Share& share,
+                      std::span<const PartGeometry<dim>> geometries, Triplets& consistent,
+                      Triplets& penalty) {
+  using Element = VelocityElement<dim, order>;
   const double mu = disc.problem.fluid.viscosity;
   const auto& weights = disc.problem.stabilisation;
   const Measure measure = measure_of(disc.problem.space);
   const bool moved = !disc.map.is_identity();
-  // Basis functions seen by a piece: the fluid's velocities and pressures node by node, then the solid's.
-  constexpr int fluid_size = (dim + 1) * (dim + 1);
+  // Basis functions seen by a piece: the fluid's velocities, its pressures, then the solid's velocities.
+  constexpr int pressures = dim * Element::nodes, fluid_size = pressures + dim + 1;
   constexpr int size = fluid_size + dim * QuadraticSpace<dim>::nodes_per_cell;
   using Local = Eigen::Matrix<double, size, size>;
   using PerComponent = Eigen::Matrix<double, size, dim>;
   std::array<int, size> unknowns;
   for (const auto& piece : disc.cut.interface) {
-    const auto& fluid_nodes = disc.fluid_nodes.part_dofs[piece.part];
+    const auto fluid_nodes = Element::nodes_of(disc, piece.part);
     if (!share.has(disc.velocity_unknown(fluid_nodes[0], 0))) continue;
     const auto& geometry = geometries[piece.part];
     const auto& solid_nodes = disc.solid_spaces[piece.solid].cell_nodes[piece.solid_cell];
     const auto& solid_mesh = disc.placed_solids[piece.solid];
-    const auto& g = geometry.gradients;
     // Nanson: the moved area vector is cof F N dA. The solid's shape functions live at the place at rest.
     const Point<dim> area_vector = geometry.cofactor * piece.normal;
     const double area_ratio = moved ? area_vector.norm() : 1.0;
@@ -40,31 +44,30 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
     PerComponent traction = PerComponent::Zero(), jump = PerComponent::Zero();
     PerComponent held_jump; // normal component and held part of the tangential one
     Eigen::Matrix<double, size, 1> pressure = Eigen::Matrix<double, size, 1>::Zero();
-    for (int i = 0; i <= dim; ++i) {
-      for (int c = 0; c < dim; ++c) {
-        const int at = i * (dim + 1) + c;
-        unknowns[at] = disc.velocity_unknown(fluid_nodes[i], c);
-        traction.row(at) = mu * n[c] * g.col(i).transpose();
-        traction(at, c) += mu * g.col(i).dot(n);
-      }
-      unknowns[i * (dim + 1) + dim] = disc.pressure_unknown(fluid_nodes[i]);
-    }
+    for (int i = 0; i < Element::nodes; ++i)
+      for (int c = 0; c < dim; ++c) unknowns[i * dim + c] = disc.velocity_unknown(fluid_nodes[i], c);
+    for (int a = 0; a <= dim; ++a) unknowns[pressures + a] = disc.pressure_unknown(fluid_nodes[a]);
     for (std::size_t k = 0; k < solid_nodes.size(); ++k)
       for (int c = 0; c < dim; ++c)
         unknowns[fluid_size + k * dim + c] = disc.solid_unknown(piece.solid, solid_nodes[k], c);
 
     Local coupling = Local::Zero(), penalties = Local::Zero();
-    double area = 0;
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
       const auto& place = disc.cut.interface_quadrature.points[q];
       const auto lambda = geometry.barycentric(place);
       const double radius = moved ? geometry.corners.row(0).dot(lambda) : place[0];
       const double w = disc.cut.interface_quadrature.weights[q] * area_ratio * measure(radius);
       const auto shape = quadratic_values<dim>(barycentric_coordinates(solid_mesh, piece.solid_cell, place));
-      for (int i = 0; i <= dim; ++i) {
-        for (int c = 0; c < dim; ++c) jump(i * (dim + 1) + c, c) = lambda[i];
-        pressure[i * (dim + 1) + dim] = lambda[i];
-      }
+      const auto value = Element::values(lambda);
+      const auto g = Element::gradients(lambda, geometry.gradients);
+      for (int i = 0; i < Element::nodes; ++i)
+        for (int c = 0; c < dim; ++c) {
+          const int at = i * dim + c;
+          jump(at, c) = value[i];
+          traction.row(at) = mu * n[c] * g.col(i).transpose();
+          traction(at, c) += mu * g.col(i).dot(n);
+        }
+      pressure.template segment<dim + 1>(pressures) = lambda;
       for (std::size_t k = 0; k < solid_nodes.size(); ++k)
         for (int c = 0; c < dim; ++c) jump(fluid_size + k * dim + c, c) = -shape[k];
       const Eigen::Matrix<double, size, 1> normal_jump = jump * n;
@@ -74,13 +77,12 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
       coupling.noalias() -= (w * (traction + pressure * n.transpose())) * held_jump.transpose();
       penalties.noalias() += (w * viscous_penalty * held_jump) * jump.transpose();
       penalties.noalias() += (w * normal_penalty * normal_jump) * normal_jump.transpose();
-      area += w;
+      if (released > 0) {
+        const PerComponent friction = traction - (traction * n) * n.transpose();
+        coupling.noalias() -= (w * released / viscous_penalty * friction) * friction.transpose();
+      }
     }
-    if (released > 0) {
-      const PerComponent friction = traction - (traction * n) * n.transpose();
-      coupling.noalias() -= (area * released / viscous_penalty * friction) * friction.transpose();
-    }
-    const auto has_jump = [](int at) { return at >= fluid_size || at % (dim + 1) < dim; };
+    const auto has_jump = [](int at) { return at >= fluid_size || at < pressures; };
     for (int a = 0; a < size; ++a)
       for (int b = 0; b < size; ++b) {
         if (a < fluid_size || b < fluid_size)
@@ -88,6 +90,15 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
         if (has_jump(a) && has_jump(b)) penalty.emplace_back(unknowns[a], unknowns[b], penalties(a, b));
       }
   }
+}
+
+} // namespace
+
+template <int dim>
+void add_interface(const Discretisation<dim>& disc, const Share& share,
+                   std::span<const PartGeometry<dim>> geometries, Triplets& consistent, Triplets& penalty) {
+  with_order(disc,
+             [&](auto order) { add_interface_of<dim, order>(disc, share, geometries, consistent, penalty); });
 }
 
 template void add_interface(const Discretisation<2>&, const Share&, std::span<const PartGeometry<2>>,

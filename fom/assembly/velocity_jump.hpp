@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fom/assembly/forms.hpp"
+#include "fom/assembly/quadratic_patch.hpp"
 
 namespace undula::fom {
 
@@ -22,19 +23,36 @@ struct VelocityJump {
   double weight = 0; ///< velocity_jump * density * h^2 * area
 };
 
+/// The same of a quadratic velocity, whose jump varies along the facet.
+template <int dim>
+struct QuadraticVelocityJump {
+  QuadraticPatch<dim> patch;
+  Point<dim> normal;
+  int part = 0; ///< the first
+  std::array<double, QuadraticPatch<dim>::points> weight{};
+};
+
+/// Of the velocities' degree; the other list is empty.
+template <int dim>
+struct VelocityJumps {
+  std::vector<VelocityJump<dim>> linear;
+  std::vector<QuadraticVelocityJump<dim>> quadratic;
+  bool empty() const { return linear.empty() && quadratic.empty(); }
+};
+
 /// Of all facets of the share.
 template <int dim>
-std::vector<VelocityJump<dim>> velocity_jumps(const Discretisation<dim>& disc, const Share& share,
-                                              std::span<const PartGeometry<dim>> geometries);
+VelocityJumps<dim> velocity_jumps(const Discretisation<dim>& disc, const Share& share,
+                                  std::span<const PartGeometry<dim>> geometries);
 
 /// Visits every entry (row, column, value) for the convecting field `b`; on a domain that moves by a map b -
-/// w crosses the facets. The speed of a facet is the mean of |b.n| at its vertices. The sequence of (row,
-/// column) does not depend on `b`.
+/// w crosses the facets. The speed at a facet of linear velocities is the mean of |b.n| at its vertices. The
+/// sequence of (row, column) does not depend on `b`.
 template <int dim, class F>
-void visit_velocity_jumps(const Discretisation<dim>& disc, std::span<const VelocityJump<dim>> jumps,
+void visit_velocity_jumps(const Discretisation<dim>& disc, const VelocityJumps<dim>& jumps,
                           const Eigen::VectorXd& b, F&& f) {
   const bool moved = !disc.map.is_identity();
-  for (const auto& jump : jumps) {
+  for (const auto& jump : jumps.linear) {
     Eigen::Matrix<double, dim, dim + 1> domain;
     if (moved) domain = domain_velocity(disc, jump.part);
     double speed = 0;
@@ -50,6 +68,27 @@ void visit_velocity_jumps(const Discretisation<dim>& disc, std::span<const Veloc
         for (int c = 0; c < dim; ++c)
           f(disc.velocity_unknown(jump.nodes[i], c), disc.velocity_unknown(jump.nodes[j], c), value);
       }
+  }
+  constexpr int nodes = QuadraticPatch<dim>::nodes_of_both;
+  for (const auto& jump : jumps.quadratic) {
+    Eigen::Matrix<double, dim, dim + 1> domain;
+    if (moved) domain = domain_velocity(disc, jump.part);
+    Eigen::Matrix<double, nodes, nodes> local = Eigen::Matrix<double, nodes, nodes>::Zero();
+    for (int q = 0; q < QuadraticPatch<dim>::points; ++q) {
+      double across = 0;
+      for (int i = 0; i < nodes; ++i)
+        if (jump.patch.trace[q][i] != 0)
+          across += jump.patch.trace[q][i] *
+                    b.template segment<dim>(disc.velocity_unknown(jump.patch.nodes[i], 0)).dot(jump.normal);
+      if (moved) across -= (domain * jump.patch.lambda[q]).dot(jump.normal);
+      const auto& form = jump.patch.normal_jump[q];
+      local.noalias() += (jump.weight[q] * std::abs(across) * form) * form.transpose();
+    }
+    for (int i = 0; i < nodes; ++i)
+      for (int j = 0; j < nodes; ++j)
+        for (int c = 0; c < dim; ++c)
+          f(disc.velocity_unknown(jump.patch.nodes[i], c), disc.velocity_unknown(jump.patch.nodes[j], c),
+            local(i, j));
   }
 }
 

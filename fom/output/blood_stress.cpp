@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "fom/assembly/part_quadrature.hpp"
-#include "fom/system/operators.hpp"
+#include "fom/space/velocity_element.hpp"
 #include "rom/base/units.hpp"
 
 namespace undula::fom {
@@ -14,18 +14,18 @@ template <int dim>
 BloodStress blood_stress(const Discretisation<dim>& disc, const BloodDamageLaw& law,
                          const Eigen::VectorXd& x) {
   BloodStress stress;
-  const auto rule = reference_rule<dim>(1);
+  // The rate of strain is constant on an element, or linear.
+  const auto rule = reference_rule<dim>(disc.problem.velocity_order);
   const bool hoop = disc.problem.space == Space::axisymmetric;
   const double per_pascal = std::pow(law.coefficient, 1 / law.time_exponent);
   const double exponent = law.stress_exponent / law.time_exponent;
   for (std::size_t p = 0; p < disc.cut.parts.size(); ++p) {
     const int part = static_cast<int>(p);
     const auto geometry = part_geometry(disc, part);
-    const auto velocity = part_velocity(disc, part, x);
-    const Eigen::Matrix<double, dim, dim> gradient = velocity * geometry.gradients.transpose();
-    const double in_plane = (0.5 * (gradient + gradient.transpose())).squaredNorm();
     for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<dim>& at, double weight) {
-      const double stretch = hoop && at[0] > 0 ? (velocity * lambda)[0] / at[0] : 0;
+      const auto [velocity, gradient] = sample_velocity(disc, part, geometry.gradients, lambda, x);
+      const double in_plane = (0.5 * (gradient + gradient.transpose())).squaredNorm();
+      const double stretch = hoop && at[0] > 0 ? velocity[0] / at[0] : 0;
       const double tau = disc.problem.fluid.viscosity * std::sqrt(2 * (in_plane + stretch * stretch));
       stress.maximum = std::max(stress.maximum, tau);
       stress.damage_rate += weight * per_pascal * std::pow(units::pressure_to_Pa(tau), exponent);

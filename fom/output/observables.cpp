@@ -70,17 +70,20 @@ WallShear wall_shear(const Discretisation<2>& disc, const Operators<2>& operator
   for (const auto& piece : disc.cut.boundary) {
     const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
     if (condition.kind != BoundaryCondition<2>::Kind::velocity) continue;
-    const auto& g = operators.gradients[piece.part];
+    const auto& g = operators.geometries[piece.part].gradients;
     const Point<2> n = -g.col(disc.cut.facets.facets[piece.facet].local[0]).normalized();
-    const Eigen::Matrix2d gradient = part_velocity(disc, piece.part, x) * g.transpose();
-    const Point<2> traction = disc.problem.fluid.viscosity * (gradient + gradient.transpose()) * n;
-    const double tangential = (traction - traction.dot(n) * n).norm();
-    shear.maximum = std::max(shear.maximum, tangential);
     double& here = shear.by_wall[static_cast<std::size_t>(plan.wall_of_facet[piece.facet])];
-    here = std::max(here, tangential);
+    const int cell = disc.cut.parts[piece.part].cell;
     for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
-      const double w =
-          disc.cut.boundary_quadrature.weights[q] * measure(disc.cut.boundary_quadrature.points[q][0]);
+      const auto& at = disc.cut.boundary_quadrature.points[q];
+      const Eigen::Matrix2d gradient =
+          sample_velocity<2>(disc, piece.part, g, barycentric_coordinates(disc.cut.mesh, cell, at), x)
+              .gradient;
+      const Point<2> traction = disc.problem.fluid.viscosity * (gradient + gradient.transpose()) * n;
+      const double tangential = (traction - traction.dot(n) * n).norm();
+      shear.maximum = std::max(shear.maximum, tangential);
+      here = std::max(here, tangential);
+      const double w = disc.cut.boundary_quadrature.weights[q] * measure(at[0]);
       shear.mean += w * tangential;
       area += w;
     }
@@ -160,7 +163,7 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   const Eigen::VectorXd residual = stepper.residual(state);
   seen.general = observe_general(plan.general, disc, operators, residual, state);
   seen.energy = stepper.energy(state, residual);
-  for (int node = 0; node < disc.fluid_unknowns() / (dim + 1); ++node)
+  for (int node = 0; node < disc.velocity_nodes(); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());
   auto shear = wall_shear(disc, operators, plan, x);
   seen.wall_shear_max = shear.maximum;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fom/space/velocity_element.hpp"
+
 namespace undula::fom {
 
 template <int dim>
@@ -21,36 +23,50 @@ bool is_flat(const std::array<Point<dim>, dim + 1>& vertices) {
 
 template <int dim>
 FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
+  using Barycentric = Eigen::Matrix<double, dim + 1, 1>;
   FluidPicture<dim> picture;
   const auto& cut = disc.cut;
-  std::vector<int> point_of_node(disc.fluid_nodes.dof_point.size(), -1);
-  const auto add_point = [&](const Point<dim>& x, const std::array<int, dim + 1>& nodes,
-                             const Eigen::Matrix<double, dim + 1, 1>& weights) {
+  std::vector<int> point_of_node(static_cast<std::size_t>(disc.velocity_nodes()), -1);
+  const auto add_point = [&](const Point<dim>& x, int part, const Barycentric& lambda) {
     picture.mesh.points.push_back(x);
-    picture.nodes.push_back(nodes);
-    picture.weights.push_back(weights);
+    picture.part.push_back(part);
+    picture.lambda.push_back(lambda);
     return static_cast<int>(picture.mesh.points.size()) - 1;
+  };
+  const auto point_at = [&](int node, int part, const Barycentric& lambda) {
+    int& point = point_of_node[static_cast<std::size_t>(node)];
+    if (point < 0) point = add_point(disc.velocity_position(node), part, lambda);
+    return point;
   };
   for (std::size_t p = 0; p < cut.parts.size(); ++p) {
     const auto& part = cut.parts[p];
-    const auto& nodes = disc.fluid_nodes.part_dofs[p];
+    const int index = static_cast<int>(p);
     std::array<int, dim + 1> simplex;
     if (!part.cut) {
-      for (int a = 0; a <= dim; ++a) {
-        int& point = point_of_node[nodes[a]];
-        if (point < 0)
-          point = add_point(cut.mesh.points[cut.mesh.cells[part.cell][a]], nodes,
-                            Eigen::Matrix<double, dim + 1, 1>::Unit(a));
-        simplex[a] = point;
+      const auto& vertices = disc.fluid_nodes.part_dofs[p];
+      for (int a = 0; a <= dim; ++a) simplex[a] = point_at(vertices[a], index, Barycentric::Unit(a));
+      if (disc.problem.velocity_order == 1) {
+        picture.mesh.cells.push_back(simplex);
+        continue;
       }
-      picture.mesh.cells.push_back(simplex);
+      constexpr auto edges = local_edges<dim>();
+      std::array<int, edges.size()> middle;
+      for (std::size_t e = 0; e < edges.size(); ++e)
+        middle[e] = point_at(disc.vertex_nodes() + disc.fluid_edges.part_edges[p][e], index,
+                             0.5 * (Barycentric::Unit(edges[e][0]) + Barycentric::Unit(edges[e][1])));
+      static_assert(dim == 2, "four triangles");
+      for (const auto& cell : {std::array{simplex[0], middle[0], middle[1]},
+                               {middle[0], simplex[1], middle[2]},
+                               {middle[1], middle[2], simplex[2]},
+                               {middle[0], middle[2], middle[1]}})
+        picture.mesh.cells.push_back(cell);
       continue;
     }
     for (int s = part.simplex_begin; s < part.simplex_end; ++s) {
       const auto& vertices = cut.simplices[s];
       if (is_flat<dim>(vertices)) continue;
       for (int a = 0; a <= dim; ++a)
-        simplex[a] = add_point(vertices[a], nodes, barycentric_coordinates(cut.mesh, part.cell, vertices[a]));
+        simplex[a] = add_point(vertices[a], index, barycentric_coordinates(cut.mesh, part.cell, vertices[a]));
       picture.mesh.cells.push_back(simplex);
     }
   }
@@ -61,9 +77,11 @@ template <int dim>
 FluidPicture<dim> moved_picture(const Discretisation<dim>& disc) {
   auto picture = fluid_picture(disc);
   if (disc.map.is_identity()) return picture;
-  for (std::size_t p = 0; p < picture.nodes.size(); ++p)
+  for (std::size_t p = 0; p < picture.part.size(); ++p)
     for (int k = 0; k <= dim; ++k)
-      picture.mesh.points[p] += picture.weights[p][k] * disc.map.displacement[picture.nodes[p][k]];
+      picture.mesh.points[p] +=
+          picture.lambda[p][k] *
+          disc.map.displacement[disc.fluid_nodes.part_dofs[static_cast<std::size_t>(picture.part[p])][k]];
   return picture;
 }
 
@@ -87,13 +105,15 @@ std::vector<NodalField> fluid_fields(const Discretisation<dim>& disc, const Flui
   NodalField velocity{"velocity", "cm/s", dim, {}};
   NodalField pressure{"pressure", "dyn/cm^2", 1, {}};
   const auto& x = state.x[0];
-  for (std::size_t p = 0; p < picture.nodes.size(); ++p) {
-    Eigen::Matrix<double, dim + 1, 1> value = Eigen::Matrix<double, dim + 1, 1>::Zero();
-    for (int k = 0; k <= dim; ++k)
-      value +=
-          picture.weights[p][k] * x.template segment<dim + 1>(disc.velocity_unknown(picture.nodes[p][k], 0));
+  for (std::size_t p = 0; p < picture.part.size(); ++p) {
+    const int part = picture.part[p];
+    const auto& lambda = picture.lambda[p];
+    const Point<dim> value = with_order(disc, [&](auto order) -> Point<dim> {
+      using Element = VelocityElement<dim, order>;
+      return Element::coefficients(disc, part, x) * Element::values(lambda);
+    });
     velocity.values.insert(velocity.values.end(), value.data(), value.data() + dim);
-    pressure.values.push_back(value[dim]);
+    pressure.values.push_back(sample_pressure<dim>(disc, part, lambda, x));
   }
   return {std::move(velocity), std::move(pressure)};
 }

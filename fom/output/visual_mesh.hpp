@@ -15,14 +15,14 @@ template <int dim>
 bool is_flat(const std::array<Point<dim>, dim + 1>& vertices);
 
 /// Triangles (tetrahedra) that fill the fluid, flat ones left out. Uncut elements share the points of their
-/// nodes; cut parts are filled by simplices with points of their own, so that a field may jump across a
-/// membrane thinner than an element.
+/// nodes, and are split into four through the mid-points of their edges where the velocity is quadratic; cut
+/// parts are filled by simplices with points of their own, so that a field may jump across a membrane thinner
+/// than an element.
 template <int dim>
 struct FluidPicture {
   FieldMesh<dim> mesh;
-  /// Value at point p = sum over k of weights[p][k] * value of fluid node nodes[p][k].
-  std::vector<std::array<int, dim + 1>> nodes;
-  std::vector<Eigen::Matrix<double, dim + 1, 1>> weights;
+  std::vector<int> part;                                 ///< by point: one that it belongs to
+  std::vector<Eigen::Matrix<double, dim + 1, 1>> lambda; ///< by point: its place there, barycentric
 };
 
 template <int dim>

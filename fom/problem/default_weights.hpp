@@ -34,4 +34,14 @@ constexpr StabilisationWeights published_weights(double speed, double time) {
   return weights;
 }
 
+/// Of quadratic velocities, whatever they start from otherwise: the pair with a linear pressure is stable by
+/// itself, so that penalties remain at cuts alone. Nitsche's grows as the inverse inequality of the degree.
+constexpr StabilisationWeights of_quadratic_velocities(StabilisationWeights weights) {
+  weights.velocity_jump = 0;
+  weights.pressure_jump = 0;
+  weights.divergence = 0;
+  weights.nitsche_viscous = 40;
+  return weights;
+}
+
 } // namespace undula::fom

@@ -69,6 +69,9 @@ struct FsiProblem {
   std::optional<DrivenHolder> holder;                     ///< empty: the solids' imposed displacements hold
   std::map<std::string, BoundaryCondition<dim>> boundary; ///< by name; every boundary name needs one
   VectorField<dim> body_force;                            ///< dyn/cm^3 on the fluid, empty: zero
+  /// Polynomial degree of the fluid's velocity, 1 or 2. The pressure is linear: with degree 2 the pair is
+  /// stable by itself (Taylor & Hood 1973), with degree 1 by its penalties.
+  int velocity_order = 1;
   StabilisationWeights stabilisation;
   double slip_length = 0;    ///< cm, of Navier's slip law on the skins of the solids; 0: no slip
   bool pin_pressure = false; ///< enclosed flow: fix the constant of the pressure at one node

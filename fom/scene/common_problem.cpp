@@ -17,6 +17,7 @@ FsiProblem<2> problem_without_meshes(const Scene& scene) {
   problem.space = scene.space;
   problem.flow = scene.flow;
   problem.fluid = scene.fluid;
+  problem.velocity_order = scene.velocity_order;
   problem.slip_length = scene.interface == Interface::slip ? scene.contact.slip : 0.0;
   return problem;
 }

@@ -7,6 +7,7 @@
 
 #include "fom/fom.hpp"
 #include "fom/scene/expression.hpp"
+#include "fom/space/velocity_element.hpp"
 #include "fom/time/reaction.hpp"
 #include "geometry/cut/part_lookup.hpp"
 #include "geometry/mesh/innermost_cell.hpp"
@@ -29,9 +30,10 @@ std::optional<Eigen::Vector3d> fluid_at(const Discretisation<2>& disc, const Poi
     const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
     if (lambda.minCoeff() < -on_edge) continue;
     if (disc.cut.parts[part].cut && !part_contains<2>(disc.cut, part, x)) continue;
-    Eigen::Vector3d value = Eigen::Vector3d::Zero();
-    for (int i = 0; i < 3; ++i)
-      value += lambda[i] * values.segment<3>(disc.velocity_unknown(disc.fluid_nodes.part_dofs[part][i], 0));
+    const auto velocity =
+        sample_velocity<2>(disc, part, barycentric_gradients(disc.cut.mesh, cell), lambda, values);
+    Eigen::Vector3d value;
+    value << velocity.value, sample_pressure<2>(disc, part, lambda, values);
     return value;
   }
   return std::nullopt;

@@ -122,6 +122,7 @@ struct Scene {
   double rim_gap_scale = 1;   ///< of the gap between the membrane's rim and the housing in the profile
   ProblemStatement problem;   ///< in place of a pump
   Space space = Space::axisymmetric;
+  int velocity_order = 1; ///< polynomial degree of the fluid's velocity
   Extent extent = Extent::full;
   Coupling coupling = Coupling::fixed;
   SolidModel solid_model = SolidModel::linear;

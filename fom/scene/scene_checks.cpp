@@ -149,6 +149,14 @@ void check_levels(const Scene& scene, const std::string& where) {
                      "solid = \"von-karman\" or \"linear\" in thin gaps, whose membrane is a plate",
                      where + ", section [model]");
   }
+  if (scene.velocity_order == 2 &&
+      (thin_gap || (scene.coupling != Coupling::fixed && scene.coupling != Coupling::mapped))) {
+    throw InputError("quadratic velocities do not go with the model",
+                     thin_gap
+                         ? std::string("order = 2 with space = \"thin-gap\"")
+                         : std::string("order = 2 with coupling = \"") + coupling_name(scene.coupling) + "\"",
+                     "order = 1, or coupling = \"fixed\" or \"mapped\"", where + ", section [space]");
+  }
   if (thin_gap && scene.profile.empty()) {
     throw InputError("thin gaps need a profile", "meshes in its place", "\"geometry.profile\"",
                      where + ", section [geometry]");

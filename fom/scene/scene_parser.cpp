@@ -144,7 +144,8 @@ public:
       }
       const bool published = scene.default_weights == DefaultWeights::published;
       if (const auto* real = std::get_if<RealKey>(&key.value)) {
-        const double value = published && real->published ? *real->published : *real->fallback;
+        double value = published && real->published ? *real->published : *real->fallback;
+        if (scene.velocity_order == 2 && real->quadratic) value = *real->quadratic;
         real->field(scene) = value * real->cgs_per_unit;
       } else if (const auto* integer = std::get_if<IntegerKey>(&key.value)) {
         integer->field(scene) = *integer->fallback;

@@ -31,9 +31,11 @@ std::string default_cell(const SceneKey& key) {
   if (key.required()) {
     return "required";
   }
-  const std::string text = default_text(key), published = published_text(key);
+  const std::string text = default_text(key), published = published_text(key),
+                    quadratic = quadratic_text(key);
   return (text.empty() ? "none" : "`" + text + "`") +
-         (published.empty() ? "" : ", published `" + published + "`");
+         (published.empty() ? "" : ", published `" + published + "`") +
+         (quadratic.empty() ? "" : ", of order 2 `" + quadratic + "`");
 }
 
 constexpr const char* table_head = "\n| key | accepts | default | meaning |\n|---|---|---|---|\n";

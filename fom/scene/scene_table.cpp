@@ -71,6 +71,10 @@ std::vector<SceneKey> model_keys() {
        choice<FIELD(space)>({name("axisymmetric", Space::axisymmetric), name("plane", Space::plane),
                              name("thin-gap", Space::thin_gap)},
                             {"3d"}, "axisymmetric")},
+      {"space.order", "",
+       "polynomial degree of the fluid's velocity; 2: quadratic, with a linear pressure, for the couplings "
+       "`fixed` and `mapped`",
+       shapes_state, IntegerKey{FIELD(velocity_order), 1, 2, 1}},
       {"model.extent", "", "part of the pump that is computed", shapes_state,
        choice<FIELD(extent)>({name("full", Extent::full)}, {"head", "lower"}, "full")},
       {"model.coupling", "",
@@ -349,21 +353,27 @@ std::vector<SceneKey> numerics_keys() {
 std::vector<SceneKey> stabilisation_keys() {
   // Scales of 0 are derived where a problem is made.
   static constexpr StabilisationWeights derived = derived_weights(0, 0),
-                                        published = published_weights(100, 2e-4);
+                                        published = published_weights(100, 2e-4),
+                                        quadratic = of_quadratic_velocities(derived);
   using Weight = double StabilisationWeights::*;
   const auto key = [](const char* path, const char* unit, const char* help, Weight weight,
                       AllowedRange allowed) {
     return SceneKey{path, unit, help, shapes_state,
                     RealKey{[weight](Scene& scene) -> double& { return scene.stabilisation.*weight; }, 1,
-                            allowed, derived.*weight, published.*weight}};
+                            allowed, derived.*weight, published.*weight, std::nullopt}};
   };
   const auto weight = [&](const char* path, const char* help, Weight member) {
-    return key(path, "", help, member, from_to(0, 1e6));
+    SceneKey result = key(path, "", help, member, from_to(0, 1e6));
+    std::get<RealKey>(result.value).quadratic = quadratic.*member;
+    return result;
   };
   using Weights = StabilisationWeights;
   auto scale = choice<FIELD(stabilisation.velocity_scale)>(
       {name("reference", VelocityScale::reference), name("local", VelocityScale::local)}, {}, "local");
   scale.published = "reference";
+  SceneKey nitsche = key("stabilisation.nitsche_viscous", "", "Nitsche penalty, times viscosity / h",
+                         &Weights::nitsche_viscous, above_to(0, 1e6));
+  std::get<RealKey>(nitsche.value).quadratic = quadratic.nitsche_viscous;
   return {
       {"stabilisation.weights", "",
        "where the other keys of this section start from; `derived`: for Re 0 to 1000, with scales from the "
@@ -388,8 +398,7 @@ std::vector<SceneKey> stabilisation_keys() {
              &Weights::ghost_inertial),
       weight("stabilisation.ghost_pressure", "ghost penalty of cut parts, pressure",
              &Weights::ghost_pressure),
-      key("stabilisation.nitsche_viscous", "", "Nitsche penalty, times viscosity / h",
-          &Weights::nitsche_viscous, above_to(0, 1e6)),
+      std::move(nitsche),
       weight("stabilisation.nitsche_normal", "Nitsche penalty on the normal component",
              &Weights::nitsche_normal),
       key("stabilisation.reference_velocity_cm_per_s", "cm_per_s",
@@ -538,8 +547,9 @@ std::span<const SceneKey> scene_table() {
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 15> help = {{
+  static const std::array<std::pair<const char*, const char*>, 16> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
+      {"space", "Finite elements of the fluid."},
       {"geometry", "Of a pump: either a profile, or meshes made elsewhere."},
       {"domain", "The fluid's domain of any other problem: a polygon or a circle, with holes ([hole.NAME])."},
       {"fluid", "Newtonian, incompressible."},

@@ -36,6 +36,7 @@ struct RealKey {
   AllowedRange allowed;
   std::optional<double> fallback;       ///< surface unit; none: the key is required
   std::optional<double> published = {}; ///< in place of `fallback` with stabilisation.weights = "published"
+  std::optional<double> quadratic = {}; ///< in place of both with space.order = 2
 };
 
 struct IntegerKey {
@@ -142,6 +143,9 @@ std::string default_text(const SceneKey& key);
 
 /// The default with stabilisation.weights = "published", "" if that is the same.
 std::string published_text(const SceneKey& key);
+
+/// The default with space.order = 2, "" if that is the same.
+std::string quadratic_text(const SceneKey& key);
 
 /// Shortest decimal notation that reads back to exactly `value`, always a TOML float.
 std::string shortest_number(double value);

@@ -99,6 +99,13 @@ std::string published_text(const SceneKey& key) {
   return choice != nullptr && !choice->published.empty() ? "\"" + choice->published + "\"" : "";
 }
 
+std::string quadratic_text(const SceneKey& key) {
+  const auto* real = std::get_if<RealKey>(&key.value);
+  return real != nullptr && real->quadratic && real->quadratic != real->fallback
+             ? shortest_number(*real->quadratic)
+             : "";
+}
+
 std::string shortest_number(double value) {
   std::string number = exact_number(value);
   // TOML tells floats from integers by the point or the exponent; "inf" and "nan" are floats.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 
+#include "fom/space/velocity_element.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::fom {
@@ -47,12 +49,8 @@ void constrain_boundary(Discretisation<dim>& disc) {
     for (const auto& piece : disc.cut.boundary) {
       const auto& condition = condition_of(disc.problem, piece.tag);
       if ((condition.kind == Kind::velocity) != velocity_pass) continue;
-      const auto& facet = disc.cut.facets.facets[piece.facet];
       const int axis = normal_axis(disc.cut, piece.facet);
-      const auto& cell = disc.cut.mesh.cells[disc.cut.parts[piece.part].cell];
-      for (int local = 0; local <= dim; ++local) {
-        if (std::find(facet.points.begin(), facet.points.end(), cell[local]) == facet.points.end()) continue;
-        const int node = disc.fluid_nodes.part_dofs[piece.part][local];
+      for (const int node : facet_velocity_nodes(disc, piece.part, piece.facet)) {
         for (int c = 0; c < dim; ++c) {
           const bool constrained =
               condition.kind == Kind::velocity || (condition.kind == Kind::symmetry && c == axis) ||
@@ -64,13 +62,13 @@ void constrain_boundary(Discretisation<dim>& disc) {
         }
       }
     }
-  for (int unknown = 0; unknown < disc.fluid_unknowns(); ++unknown) {
-    if (!fixed[unknown]) continue;
-    const int node = unknown / (dim + 1);
-    disc.constrained.push_back({unknown, unknown % (dim + 1),
-                                disc.cut.mesh.points[disc.fluid_nodes.dof_point[node]], source[unknown]});
-    disc.is_constrained[unknown] = 1;
-  }
+  for (int node = 0; node < disc.velocity_nodes(); ++node)
+    for (int c = 0; c < dim; ++c) {
+      const int unknown = disc.velocity_unknown(node, c);
+      if (!fixed[unknown]) continue;
+      disc.constrained.push_back({unknown, c, disc.velocity_position(node), source[unknown]});
+      disc.is_constrained[unknown] = 1;
+    }
   if (disc.problem.pin_pressure && disc.fluid_unknowns() > 0) {
     const int unknown = disc.pressure_unknown(0);
     disc.constrained.push_back({unknown, dim, disc.cut.mesh.points[disc.fluid_nodes.dof_point[0]], nullptr});
@@ -122,11 +120,29 @@ void bisect(std::span<int> items, std::span<const Point<dim>> positions, int fir
 
 namespace {
 
+template <int dim>
+void require_order(const FsiProblem<dim>& problem) {
+  if (problem.velocity_order != 1 && problem.velocity_order != 2)
+    throw InputError("the fluid's velocity has no such degree", std::to_string(problem.velocity_order),
+                     "1 or 2", "FsiProblem::velocity_order");
+}
+
+/// Quadrature of the cuts for quadratic velocities: three of them times r inside, and on openings, where they
+/// carry themselves out.
+CutOptions good_enough(CutOptions options, int velocity_order) {
+  if (velocity_order == 1) return options;
+  options.volume_degree = std::max(options.volume_degree, 6);
+  options.boundary_degree = std::max(options.boundary_degree, 7);
+  return options;
+}
+
 /// Numbering and constraints for the cut, problem and solids' spaces in `disc`.
 template <int dim>
 void number_unknowns(Discretisation<dim>& disc) {
   disc.fluid_nodes = build_dof_sets(disc.cut);
-  disc.solid_offset.assign(1, static_cast<int>(disc.fluid_nodes.dof_point.size()) * (dim + 1));
+  disc.fluid_edges = {};
+  if (disc.problem.velocity_order == 2) disc.fluid_edges = build_edge_sets(disc.cut);
+  disc.solid_offset.assign(1, disc.velocity_nodes() * dim + disc.vertex_nodes());
   for (const auto& space : disc.solid_spaces)
     disc.solid_offset.push_back(disc.solid_offset.back() + static_cast<int>(space.nodes.size()) * dim);
   disc.is_constrained.assign(disc.unknowns(), 0);
@@ -149,11 +165,13 @@ template <int dim>
 Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& options) {
   Discretisation<dim> disc;
   disc.problem = std::move(problem);
+  require_order(disc.problem);
   for (const auto& body : disc.problem.solids) {
     disc.placed_solids.push_back(body.mesh);
     disc.solid_spaces.push_back(build_quadratic_space(body.mesh));
   }
-  disc.cutter.emplace(disc.problem.background, disc.placed_solids, options);
+  disc.cutter.emplace(disc.problem.background, disc.placed_solids,
+                      good_enough(options, disc.problem.velocity_order));
   disc.cut = disc.cutter->cut(disc.placed_solids);
   number_unknowns(disc);
   return disc;
@@ -162,6 +180,10 @@ Discretisation<dim> discretise(FsiProblem<dim> problem, const CutOptions& option
 template <int dim>
 Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& placement,
                           const CutOptions& options) {
+  if (before.problem.velocity_order != 1)
+    throw InputError("a cut that moves carries linear velocities only",
+                     "velocity_order = " + std::to_string(before.problem.velocity_order),
+                     "velocity_order = 1", "FsiProblem::velocity_order");
   Discretisation<dim> disc;
   disc.interface_moves = true;
   Eigen::Index first = 0;
@@ -185,9 +207,10 @@ Discretisation<dim> recut(Discretisation<dim>& before, const Eigen::VectorXd& pl
 template <int dim>
 std::vector<Point<dim>> unknown_positions(const Discretisation<dim>& disc) {
   std::vector<Point<dim>> positions(disc.unknowns());
-  for (std::size_t node = 0; node < disc.fluid_nodes.dof_point.size(); ++node)
-    for (int c = 0; c <= dim; ++c)
-      positions[node * (dim + 1) + c] = disc.cut.mesh.points[disc.fluid_nodes.dof_point[node]];
+  for (int node = 0; node < disc.velocity_nodes(); ++node) {
+    for (int c = 0; c < dim; ++c) positions[disc.velocity_unknown(node, c)] = disc.velocity_position(node);
+    if (node < disc.vertex_nodes()) positions[disc.pressure_unknown(node)] = disc.velocity_position(node);
+  }
   for (std::size_t s = 0; s < disc.solid_spaces.size(); ++s)
     for (std::size_t node = 0; node < disc.solid_spaces[s].nodes.size(); ++node)
       for (int c = 0; c < dim; ++c)

@@ -1,11 +1,13 @@
 // The unknowns of a fluid-structure problem on one cut: spaces, numbering, constraints, ownership. The cut is
 // that of the solids at rest, or where they were placed (see recut).
 //
-// Unknowns in natural order: for every scalar fluid node i its dim velocity components and its pressure,
-// i * (dim + 1) + c; then for every solid its P2 nodes' velocities, offset + node * dim + c.
+// Unknowns in natural order: for every vertex i of the fluid its dim velocity components and its pressure,
+// i * (dim + 1) + c; with quadratic velocities then those of the edges' mid-points; then for every solid its
+// P2 nodes' velocities, offset + node * dim + c. Velocity nodes count vertices first, then edges.
 // Displacements are stored in an array of the same length as the unknowns, at the places of the velocities.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -45,7 +47,8 @@ struct Discretisation {
   DomainMap<dim> map;                          ///< of the fluid's domain; empty: identity
   std::optional<BackgroundCutter<dim>> cutter; ///< the background, prepared for the cuts of a moving solid
   CutMesh<dim> cut;
-  DofSets<dim> fluid_nodes;
+  DofSets<dim> fluid_nodes;  ///< vertices
+  EdgeSets<dim> fluid_edges; ///< empty with linear velocities
   std::vector<QuadraticSpace<dim>> solid_spaces;
   std::vector<int>
       solid_offset; ///< first unknown of each solid; size solids + 1, the last = number of unknowns
@@ -59,7 +62,18 @@ struct Discretisation {
   int fluid_unknowns() const { return solid_offset.front(); }
   int unknowns() const { return solid_offset.back(); }
   int solid_unknowns() const { return unknowns() - fluid_unknowns(); }
-  int velocity_unknown(int node, int component) const { return node * (dim + 1) + component; }
+  int vertex_nodes() const { return static_cast<int>(fluid_nodes.dof_point.size()); }
+  int velocity_nodes() const { return vertex_nodes() + static_cast<int>(fluid_edges.edge_points.size()); }
+  int velocity_unknown(int node, int component) const {
+    return node * dim + std::min(node, vertex_nodes()) + component;
+  }
+  /// Where a velocity node is at rest, cm.
+  Point<dim> velocity_position(int node) const {
+    const auto& points = cut.mesh.points;
+    if (node < vertex_nodes()) return points[fluid_nodes.dof_point[node]];
+    const auto& ends = fluid_edges.edge_points[node - vertex_nodes()];
+    return 0.5 * (points[ends[0]] + points[ends[1]]);
+  }
   int pressure_unknown(int node) const { return node * (dim + 1) + dim; }
   int solid_unknown(int solid, int node, int component) const {
     return solid_offset[solid] + node * dim + component;

@@ -9,22 +9,17 @@ void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values) {
     MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
 }
 
-template <int dim>
-Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& disc, int part,
-                                                  const Eigen::VectorXd& x) {
-  Eigen::Matrix<double, dim, dim + 1> velocity;
-  for (int a = 0; a <= dim; ++a)
-    velocity.col(a) = x.template segment<dim>(disc.velocity_unknown(disc.fluid_nodes.part_dofs[part][a], 0));
-  return velocity;
-}
-
 namespace {
 
 /// Room for the entries of a single rank, so that the lists need not grow.
 template <int dim>
 void reserve_entries(const Discretisation<dim>& disc, Triplets& mass, Triplets& physical,
                      Triplets& stabilisation) {
-  constexpr std::size_t nodes = dim + 1, pair = dim + 2, piece = nodes * nodes + dim * nodes * (dim + 2) / 2;
+  const bool quadratic = disc.problem.velocity_order == 2;
+  constexpr std::size_t solid_nodes = QuadraticSpace<dim>::nodes_per_cell;
+  const std::size_t nodes = quadratic ? solid_nodes : dim + 1,
+                    pair = quadratic ? 2 * nodes - dim - 1 : dim + 2,
+                    piece = dim * (nodes + solid_nodes) + dim + 1;
   const std::size_t parts = disc.cut.parts.size(), pieces = disc.cut.interface.size();
   mass.reserve(parts * nodes * nodes * dim);
   physical.reserve(parts * nodes * nodes * (dim * dim + 2 * dim) + pieces * piece * piece);
@@ -45,17 +40,22 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   const Share share{&operators.ownership.owner, operators.rank};
 
   const std::size_t parts = disc.cut.parts.size();
-  const auto geometries = part_geometries(disc);
-  operators.moments.assign(parts, PartMoments<dim>::value_type::Zero());
+  operators.geometries = part_geometries(disc);
+  const std::span<const PartGeometry<dim>> geometries = operators.geometries;
+  const bool linear = disc.problem.velocity_order == 1;
+  if (linear) operators.moments.assign(parts, PartMoments<dim>::value_type::Zero());
   if (!disc.map.is_identity()) operators.widening = operators.moments;
   const int size = disc.unknowns();
   Triplets mass, physical, stabilisation, damping, stiffness;
   reserve_entries(disc, mass, physical, stabilisation);
   for (std::size_t p = 0; p < parts; ++p) {
-    operators.gradients.push_back(geometries[p].gradients);
     if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0))) continue;
     const int part = static_cast<int>(p);
     operators.own_parts.push_back(part);
+    if (!linear) {
+      add_quadratic_part(disc, part, geometries[p], mass, physical);
+      continue;
+    }
     const auto integrals = integrate_part(disc, part, geometries[p]);
     operators.moments[p] = integrals.moments;
     if (!disc.map.is_identity()) operators.widening[p] = integrals.widening;
@@ -68,7 +68,7 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   add_fluid_stabilisation<dim>(disc, share, geometries, stabilisation);
   if (disc.problem.flow == FlowModel::navier_stokes &&
       disc.problem.stabilisation.velocity_scale == VelocityScale::local)
-    operators.velocity_jumps = velocity_jumps<dim>(disc, share, geometries);
+    operators.velocity_jumps = velocity_jumps(disc, share, geometries);
   add_interface<dim>(disc, share, geometries, physical, stabilisation);
   add_solid_mass<dim>(
       disc, share, [](const Body& body) { return body.properties.mass_damping; }, damping);
@@ -98,6 +98,5 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
 }
 
 template Operators<2> build_operators(const Discretisation<2>&, MPI_Comm, PhaseTimer&);
-template Eigen::Matrix<double, 2, 3> part_velocity<2>(const Discretisation<2>&, int, const Eigen::VectorXd&);
 
 } // namespace undula::fom

@@ -3,10 +3,13 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "fom/assembly/nonlinear_solid.hpp"
+#include "fom/assembly/quadratic_forms.hpp"
 #include "fom/assembly/velocity_jump.hpp"
 #include "rom/base/phase_timer.hpp"
 
@@ -29,22 +32,17 @@ struct Operators {
   SparseMatrix stiffness;     ///< of linear solids; zeros for the others
   bool has_nonlinear_solid = false;       ///< on any rank
   std::vector<SolidCell> nonlinear_cells; ///< of the share
-  PartMoments<dim> moments;
+  PartMoments<dim> moments;               ///< of linear velocities; else empty
   PartMoments<dim> widening;  ///< moments with the weight div w, w the velocity of the map; empty: identity
   std::vector<int> own_parts; ///< parts of the share
-  std::vector<Eigen::Matrix<double, dim, dim + 1>> gradients; ///< barycentric, by part, moved
-  std::vector<VelocityJump<dim>> velocity_jumps;   ///< of the share, where the local velocity scales them
+  std::vector<PartGeometry<dim>> geometries;       ///< by part, moved
+  VelocityJumps<dim> velocity_jumps;               ///< of the share, where the local velocity scales them
   std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
 };
 
 /// Collective over `comm`. Phase "assemble".
 template <int dim>
 Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, PhaseTimer& timer);
-
-/// Velocity of the vertices of a fluid part, column per vertex.
-template <int dim>
-Eigen::Matrix<double, dim, dim + 1> part_velocity(const Discretisation<dim>& disc, int part,
-                                                  const Eigen::VectorXd& x);
 
 /// Whether `visit_convection` has entries: fluid that convects, or a domain that moves by a map.
 template <int dim>
@@ -73,7 +71,7 @@ template <int dim, class F>
 void visit_flow_dependent(const Discretisation<dim>& disc, const Operators<dim>& operators,
                           const Eigen::VectorXd& b, F&& f) {
   visit_convection(disc, operators, b, f);
-  visit_velocity_jumps<dim>(disc, operators.velocity_jumps, b, f);
+  visit_velocity_jumps(disc, operators.velocity_jumps, b, f);
 }
 
 /// Sum of `values` over all ranks, in place.
@@ -81,11 +79,79 @@ void sum_over_ranks(MPI_Comm comm, Eigen::VectorXd& values);
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <int dim, class F>
-void visit_opening_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
-                              const Eigen::VectorXd& b, F&& f) {
+namespace detail {
+
+/// Visits rho/2 (through u, v) over one piece of a boundary or skin, for every velocity component. place(q):
+/// barycentric coordinates of a quadrature point and its weight with the measure; through(lambda, shape): the
+/// speed across the piece there.
+template <int dim, int order, class Place, class Through, class F>
+void visit_carried(const Discretisation<dim>& disc, int part, int first, int last, Place&& place,
+                   Through&& through, F&& f) {
+  using Element = VelocityElement<dim, order>;
+  const auto nodes = Element::nodes_of(disc, part);
+  Eigen::Matrix<double, Element::nodes, Element::nodes> local =
+      Eigen::Matrix<double, Element::nodes, Element::nodes>::Zero();
+  for (int q = first; q < last; ++q) {
+    const auto [lambda, weight] = place(q);
+    const auto shape = Element::values(lambda);
+    local += 0.5 * disc.problem.fluid.density * weight * through(lambda, shape) * shape * shape.transpose();
+  }
+  for (int i = 0; i < Element::nodes; ++i)
+    for (int j = 0; j < Element::nodes; ++j)
+      for (int c = 0; c < dim; ++c)
+        f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+}
+
+template <int dim, int order, class F>
+void visit_part_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                           const Eigen::VectorXd& b, F&& f) {
+  using Element = VelocityElement<dim, order>;
+  const bool convects = disc.problem.flow == FlowModel::navier_stokes, moved = !disc.map.is_identity();
   const double density = disc.problem.fluid.density;
-  if (disc.problem.flow != FlowModel::navier_stokes) return;
+  for (const int part : operators.own_parts) {
+    const auto nodes = Element::nodes_of(disc, part);
+    typename Element::Coefficients velocity = Element::Coefficients::Zero();
+    if (convects) velocity = Element::coefficients(disc, part, b);
+    Eigen::Matrix<double, Element::nodes, Element::nodes> local;
+    if constexpr (order == 1) {
+      if (moved) velocity -= domain_velocity(disc, part);
+      local = part_convection<dim>(density, operators.moments[part], operators.geometries[part].gradients,
+                                   velocity);
+      if (moved) local += 0.5 * density * operators.widening[part];
+    } else {
+      local = quadratic_convection<dim>(disc, part, operators.geometries[part], velocity);
+    }
+    for (int i = 0; i < Element::nodes; ++i)
+      for (int j = 0; j < Element::nodes; ++j)
+        for (int c = 0; c < dim; ++c)
+          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+  }
+}
+
+/// What moves along with the skin of a domain that moves by a map.
+template <int dim, int order, class F>
+void visit_moved_skin(const Discretisation<dim>& disc, const Operators<dim>& operators, F&& f) {
+  const Measure measure = measure_of(disc.problem.space);
+  const Share share{&operators.ownership.owner, operators.rank};
+  for (const auto& piece : disc.cut.interface) {
+    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[piece.part][0], 0))) continue;
+    const auto& geometry = operators.geometries[piece.part];
+    const auto velocity = domain_velocity(disc, piece.part);
+    const Point<dim> area_vector = geometry.cofactor * piece.normal;
+    const auto place = [&](int q) {
+      const auto lambda = geometry.barycentric(disc.cut.interface_quadrature.points[q]);
+      return std::pair(
+          lambda, disc.cut.interface_quadrature.weights[q] * measure(geometry.corners.row(0).dot(lambda)));
+    };
+    visit_carried<dim, order>(
+        disc, piece.part, piece.quadrature_begin, piece.quadrature_end, place,
+        [&](const auto& lambda, const auto&) { return -area_vector.dot(velocity * lambda); }, f);
+  }
+}
+
+template <int dim, int order, class F>
+void visit_openings(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                    const Eigen::VectorXd& b, F&& f) {
   const Measure measure = measure_of(disc.problem.space);
   const Share share{&operators.ownership.owner, operators.rank};
   for (const auto& piece : disc.cut.boundary) {
@@ -93,87 +159,68 @@ void visit_opening_convection(const Discretisation<dim>& disc, const Operators<d
     if (condition.kind != BoundaryCondition<dim>::Kind::opening ||
         condition.opening == OpeningCondition::total_pressure)
       continue;
-    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
-    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
+    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[piece.part][0], 0))) continue;
     const int cell = disc.cut.parts[piece.part].cell;
     const auto& facet = disc.cut.facets.facets[piece.facet];
-    const Point<dim> normal = -operators.gradients[piece.part].col(facet.local[0]).normalized();
-    const auto velocity = part_velocity(disc, piece.part, b);
-    Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
-    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
+    const Point<dim> normal = -operators.geometries[piece.part].gradients.col(facet.local[0]).normalized();
+    const auto velocity = VelocityElement<dim, order>::coefficients(disc, piece.part, b);
+    const auto place = [&](int q) {
       const auto& x = disc.cut.boundary_quadrature.points[q];
-      const auto lambda = barycentric_coordinates(disc.cut.mesh, cell, x);
-      double through = normal.dot(velocity * lambda);
-      if (condition.opening == OpeningCondition::static_pressure) through = std::max(through, 0.0);
-      local += 0.5 * density * disc.cut.boundary_quadrature.weights[q] * measure(x[0]) * through * lambda *
-               lambda.transpose();
-    }
-    for (int i = 0; i <= dim; ++i)
-      for (int j = 0; j <= dim; ++j)
-        for (int c = 0; c < dim; ++c)
-          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
+      return std::pair(barycentric_coordinates(disc.cut.mesh, cell, x),
+                       disc.cut.boundary_quadrature.weights[q] * measure(x[0]));
+    };
+    visit_carried<dim, order>(
+        disc, piece.part, piece.quadrature_begin, piece.quadrature_end, place,
+        [&](const auto&, const auto& shape) {
+          const double through = normal.dot(velocity * shape);
+          return condition.opening == OpeningCondition::static_pressure ? std::max(through, 0.0) : through;
+        },
+        f);
   }
+}
+
+/// Momentum that an interface takes along which moves through the background.
+template <int dim, int order, class F>
+void visit_recut_skin(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                      const Eigen::VectorXd& b, F&& f) {
+  const Measure measure = measure_of(disc.problem.space);
+  const Share share{&operators.ownership.owner, operators.rank};
+  for (const auto& piece : disc.cut.interface) {
+    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[piece.part][0], 0))) continue;
+    const auto velocity = VelocityElement<dim, order>::coefficients(disc, piece.part, b);
+    const auto place = [&](int q) {
+      const auto& x = disc.cut.interface_quadrature.points[q];
+      return std::pair(barycentric_coordinates(disc.cut.mesh, disc.cut.parts[piece.part].cell, x),
+                       disc.cut.interface_quadrature.weights[q] * measure(x[0]));
+    };
+    visit_carried<dim, order>(
+        disc, piece.part, piece.quadrature_begin, piece.quadrature_end, place,
+        [&](const auto&, const auto& shape) { return piece.normal.dot(velocity * shape); }, f);
+  }
+}
+
+} // namespace detail
+
+template <int dim, class F>
+void visit_opening_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                              const Eigen::VectorXd& b, F&& f) {
+  if (disc.problem.flow != FlowModel::navier_stokes) return;
+  with_order(disc, [&](auto order) { detail::visit_openings<dim, order>(disc, operators, b, f); });
 }
 
 template <int dim, class F>
 void visit_convection(const Discretisation<dim>& disc, const Operators<dim>& operators,
                       const Eigen::VectorXd& b, F&& f) {
-  const double density = disc.problem.fluid.density;
-  const bool convects = disc.problem.flow == FlowModel::navier_stokes, moved = !disc.map.is_identity();
-  if (!convects && !moved) return;
-  for (const int part : operators.own_parts) {
-    const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    Eigen::Matrix<double, dim, dim + 1> relative = Eigen::Matrix<double, dim, dim + 1>::Zero();
-    if (convects) relative = part_velocity(disc, part, b);
-    if (moved) relative -= domain_velocity(disc, part);
-    auto local = part_convection<dim>(density, operators.moments[part], operators.gradients[part], relative);
-    if (moved) local += 0.5 * density * operators.widening[part];
-    for (int i = 0; i <= dim; ++i)
-      for (int j = 0; j <= dim; ++j)
-        for (int c = 0; c < dim; ++c)
-          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
-  }
-  const Measure measure = measure_of(disc.problem.space);
-  const Share share{&operators.ownership.owner, operators.rank};
-  if (!convects) {
-    for (const auto& piece : disc.cut.interface) {
-      const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
-      if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
-      const auto geometry = part_geometry(disc, piece.part);
-      const auto velocity = domain_velocity(disc, piece.part);
-      const Point<dim> area_vector = geometry.cofactor * piece.normal;
-      Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
-      for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
-        const auto lambda = geometry.barycentric(disc.cut.interface_quadrature.points[q]);
-        const double through = -area_vector.dot(velocity * lambda);
-        local += 0.5 * density * disc.cut.interface_quadrature.weights[q] *
-                 measure(geometry.corners.row(0).dot(lambda)) * through * lambda * lambda.transpose();
-      }
-      for (int i = 0; i <= dim; ++i)
-        for (int j = 0; j <= dim; ++j)
-          for (int c = 0; c < dim; ++c)
-            f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
-    }
-    return;
-  }
-  visit_opening_convection(disc, operators, b, f);
-  if (!disc.interface_moves) return;
-  for (const auto& piece : disc.cut.interface) {
-    const auto& nodes = disc.fluid_nodes.part_dofs[piece.part];
-    if (!share.has(disc.velocity_unknown(nodes[0], 0))) continue;
-    const auto velocity = part_velocity(disc, piece.part, b);
-    Eigen::Matrix<double, dim + 1, dim + 1> local = Eigen::Matrix<double, dim + 1, dim + 1>::Zero();
-    for (int q = piece.quadrature_begin; q < piece.quadrature_end; ++q) {
-      const auto& x = disc.cut.interface_quadrature.points[q];
-      const auto lambda = barycentric_coordinates(disc.cut.mesh, disc.cut.parts[piece.part].cell, x);
-      local += 0.5 * density * disc.cut.interface_quadrature.weights[q] * measure(x[0]) *
-               piece.normal.dot(velocity * lambda) * lambda * lambda.transpose();
-    }
-    for (int i = 0; i <= dim; ++i)
-      for (int j = 0; j <= dim; ++j)
-        for (int c = 0; c < dim; ++c)
-          f(disc.velocity_unknown(nodes[i], c), disc.velocity_unknown(nodes[j], c), local(i, j));
-  }
+  if (!has_convection(disc)) return;
+  const bool convects = disc.problem.flow == FlowModel::navier_stokes;
+  with_order(disc, [&](auto order) {
+    detail::visit_part_convection<dim, order>(disc, operators, b, f);
+    if (!convects)
+      detail::visit_moved_skin<dim, order>(disc, operators, f);
+    else
+      detail::visit_openings<dim, order>(disc, operators, b, f);
+    if (convects && disc.interface_moves) detail::visit_recut_skin<dim, order>(disc, operators, b, f);
+  });
 }
 
 } // namespace undula::fom

@@ -1,7 +1,8 @@
 #include "fom/time/reaction.hpp"
 
-#include <algorithm>
 #include <set>
+
+#include "fom/space/velocity_element.hpp"
 
 namespace undula::fom {
 
@@ -11,11 +12,8 @@ Point<dim> force_on_boundary(const Discretisation<dim>& disc, const Eigen::Vecto
   std::set<int> nodes;
   for (const auto& piece : disc.cut.boundary) {
     if (disc.problem.background.boundary_names[piece.tag] != name) continue;
-    const auto& facet = disc.cut.facets.facets[piece.facet];
-    const auto& cell = disc.cut.mesh.cells[disc.cut.parts[piece.part].cell];
-    for (int local = 0; local <= dim; ++local)
-      if (std::find(facet.points.begin(), facet.points.end(), cell[local]) != facet.points.end())
-        nodes.insert(disc.fluid_nodes.part_dofs[piece.part][local]);
+    const auto on_facet = facet_velocity_nodes(disc, piece.part, piece.facet);
+    nodes.insert(on_facet.begin(), on_facet.end());
   }
   Point<dim> force = Point<dim>::Zero();
   for (const int node : nodes) force -= residual.template segment<dim>(disc.velocity_unknown(node, 0));

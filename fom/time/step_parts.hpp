@@ -50,8 +50,8 @@ template <int dim>
 Eigen::VectorXd jumps_of(const Discretisation<dim>& disc, const Operators<dim>& operators,
                          const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
   Eigen::VectorXd jumps = Eigen::VectorXd::Zero(x.size());
-  visit_velocity_jumps<dim>(disc, operators.velocity_jumps, b,
-                            [&](int row, int column, double value) { jumps[row] += value * x[column]; });
+  visit_velocity_jumps(disc, operators.velocity_jumps, b,
+                       [&](int row, int column, double value) { jumps[row] += value * x[column]; });
   return jumps;
 }
 

@@ -59,4 +59,8 @@ CutMesh<dim> cut_mesh(const SimplexMesh<dim>& background, std::span<const Simple
 template <int dim>
 DofSets<dim> build_dof_sets(const CutMesh<dim>& cut);
 
+/// Unknowns numbered by ascending pairs of background points.
+template <int dim>
+EdgeSets<dim> build_edge_sets(const CutMesh<dim>& cut);
+
 } // namespace undula::geometry

@@ -76,4 +76,24 @@ struct DofSets {
   std::vector<int> dof_point;                      ///< [unknown] -> background point
 };
 
+/// Scalar unknowns at the mid-points of the background's edges, which the P2 space on the fluid parts has
+/// besides those of DofSets. Parts share them by the same rule.
+template <int dim>
+struct EdgeSets {
+  static constexpr int per_part = dim * (dim + 1) / 2;
+  /// [part][local edge] -> unknown, counted from 0; edges (0,1), (0,2), .., (1,2), .. of the local vertices.
+  std::vector<std::array<int, per_part>> part_edges;
+  std::vector<std::array<int, 2>> edge_points; ///< [unknown] -> the background points it is half-way between
+};
+
+/// The local vertices that a local edge of a simplex joins, in the order of EdgeSets.
+template <int dim>
+constexpr std::array<std::array<int, 2>, EdgeSets<dim>::per_part> local_edges() {
+  std::array<std::array<int, 2>, EdgeSets<dim>::per_part> edges{};
+  int count = 0;
+  for (int a = 0; a <= dim; ++a)
+    for (int b = a + 1; b <= dim; ++b) edges[count++] = {a, b};
+  return edges;
+}
+
 } // namespace undula::geometry

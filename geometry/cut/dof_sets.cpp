@@ -1,37 +1,13 @@
 #include <algorithm>
-#include <numeric>
 
 #include "geometry/cut/cut.hpp"
+#include "geometry/cut/member_sets.hpp"
 
 namespace undula::geometry {
-namespace {
-
-// Disjoint sets over the corners (part, local vertex); the root is the smallest member, so that the numbering
-// follows the order of the parts.
-class CornerSets {
-public:
-  explicit CornerSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(int a, int b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<int> parent_;
-};
-
-} // namespace
-
 template <int dim>
 DofSets<dim> build_dof_sets(const CutMesh<dim>& cut) {
   const int n_parts = static_cast<int>(cut.parts.size());
-  CornerSets sets(static_cast<std::size_t>(n_parts) * (dim + 1));
+  MemberSets sets(static_cast<std::size_t>(n_parts) * (dim + 1));
   const auto corner = [&](int part, int point) {
     const auto& points = cut.mesh.cells[cut.parts[part].cell];
     const auto local = std::find(points.begin(), points.end(), point) - points.begin();

@@ -87,7 +87,7 @@ struct MovingPlate {
     const Eigen::VectorXd difference = state.x[0] - exact(state.time);
     double sum = 0, area = 0;
     for (const int part : operators.own_parts) {
-      const auto local = part_velocity(disc, part, difference);
+      const auto local = VelocityElement<2, 1>::coefficients(disc, part, difference);
       sum += (local * operators.moments[part] * local.transpose()).trace();
       area += operators.moments[part].sum();
     }

@@ -48,15 +48,14 @@ struct Sampler {
 
 std::vector<int> velocity_unknowns(const Discretisation<2>& disc) {
   std::vector<int> unknowns;
-  for (std::size_t node = 0; node < disc.fluid_nodes.dof_point.size(); ++node)
-    for (int c = 0; c < 2; ++c) unknowns.push_back(disc.velocity_unknown(static_cast<int>(node), c));
+  for (int node = 0; node < disc.velocity_nodes(); ++node)
+    for (int c = 0; c < 2; ++c) unknowns.push_back(disc.velocity_unknown(node, c));
   return unknowns;
 }
 
 std::vector<int> pressure_unknowns(const Discretisation<2>& disc) {
   std::vector<int> unknowns;
-  for (std::size_t node = 0; node < disc.fluid_nodes.dof_point.size(); ++node)
-    unknowns.push_back(disc.pressure_unknown(static_cast<int>(node)));
+  for (int node = 0; node < disc.vertex_nodes(); ++node) unknowns.push_back(disc.pressure_unknown(node));
   return unknowns;
 }
 

@@ -106,12 +106,14 @@ Bases build_bases(const PreparedScene& prepared, const Scene& scene, std::span<c
 
   // The pressure's L2 product has the pattern of the parts' moments.
   Triplets pressure_entries;
-  for (std::size_t part = 0; part < prepared.operators.moments.size(); ++part)
+  for (const int part : prepared.operators.own_parts) {
+    const auto moments = integrate_part(disc, part, prepared.operators.geometries[part]).moments;
+    const auto& nodes = disc.fluid_nodes.part_dofs[part];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        pressure_entries.emplace_back(disc.pressure_unknown(disc.fluid_nodes.part_dofs[part][i]),
-                                      disc.pressure_unknown(disc.fluid_nodes.part_dofs[part][j]),
-                                      prepared.operators.moments[part](i, j));
+        pressure_entries.emplace_back(disc.pressure_unknown(nodes[i]), disc.pressure_unknown(nodes[j]),
+                                      moments(i, j));
+  }
   const SparseMatrix solid_energy =
       prepared.operators.stiffness + angular_frequency * angular_frequency * prepared.operators.mass;
   const ColumnSparse velocity_inner = submatrix(prepared.operators.mass, velocity_rows);

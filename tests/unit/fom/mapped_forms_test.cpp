@@ -27,15 +27,13 @@ double difference(const SparseMatrix& a, const SparseMatrix& b) {
   return largest / size;
 }
 
-class MappedForms : public testing::TestWithParam<Space> {
+class MappedForms : public testing::TestWithParam<Elements> {
 protected:
   Operators<2> build(const Discretisation<2>& disc) { return build_operators(disc, MPI_COMM_SELF, timer); }
   PhaseTimer timer;
 };
-INSTANTIATE_TEST_SUITE_P(Spaces, MappedForms, testing::Values(Space::plane, Space::axisymmetric),
-                         [](const auto& instance) {
-                           return instance.param == Space::axisymmetric ? "Axisymmetric" : "Plane";
-                         });
+INSTANTIATE_TEST_SUITE_P(Elements, MappedForms, testing::ValuesIn(all_elements),
+                         [](const auto& instance) { return instance.param.name(); });
 
 TEST_P(MappedForms, NoDisplacementIsNoMap) {
   auto disc = discretise(channel_with_plate(GetParam()), CutOptions{});
@@ -69,23 +67,24 @@ TEST_P(MappedForms, AreThoseOfTheMovedMesh) {
     EXPECT_LT(difference(mass_b, mass_a), 1e-12);
     // 1/r is integrated to the accuracy of the rule, and the moved mesh may divide its cut elements
     // otherwise.
-    EXPECT_LT(difference(b.physical, a.physical),
-              GetParam() == Space::plane ? 1e-12 : 1e-8); // with the interface, rows and columns of the solid
+    EXPECT_LT(
+        difference(b.physical, a.physical),
+        GetParam().space == Space::plane ? 1e-12 : 1e-8); // with the interface, rows and columns of the solid
     if (scale[0] == scale[1]) {
       EXPECT_LT(difference(b.stabilisation, a.stabilisation), 1e-12);
     }
     EXPECT_NEAR(smallest_volume_ratio(disc),
-                scale.prod() * (GetParam() == Space::axisymmetric ? scale[0] : 1.0), 1e-12);
+                scale.prod() * (GetParam().space == Space::axisymmetric ? scale[0] : 1.0), 1e-12);
   }
 }
 
 /// Everything moves along with the same velocity, while the nodes in between move at random: nothing happens.
 TEST_P(MappedForms, UniformFlowStaysUniform) {
-  const Point<2> stream = GetParam() == Space::plane ? Point<2>(0.7, -1.1) : Point<2>(0, -1.1);
+  const Point<2> stream = GetParam().space == Space::plane ? Point<2>(0.7, -1.1) : Point<2>(0, -1.1);
   for (const auto scheme : {TimeScheme::bdf1, TimeScheme::bdf2}) {
     auto problem = channel_with_plate(GetParam());
     for (auto& [name, condition] : problem.boundary)
-      if (GetParam() == Space::plane || name != "axis") {
+      if (GetParam().space == Space::plane || name != "axis") {
         condition.kind = BoundaryCondition<2>::Kind::velocity;
         condition.velocity = [&](const Point<2>&, double) { return stream; };
       }
@@ -183,7 +182,8 @@ TEST_P(MappedForms, APistonPushesAUniformFlow) {
   for (const auto& [scheme, flow] : cases) {
     SCOPED_TRACE(flow == FlowModel::stokes ? "Stokes" : "Navier-Stokes");
     FsiProblem<2> problem;
-    problem.space = GetParam();
+    problem.space = GetParam().space;
+    problem.velocity_order = GetParam().velocity_order;
     problem.flow = flow;
     problem.fluid = {1.0, 0.05};
     problem.stabilisation = derived_weights(1.0, 0.1);
@@ -233,7 +233,7 @@ TEST_P(MappedForms, APistonPushesAUniformFlow) {
                    }
                    EXPECT_LT(velocity_error, 1e-8 * rate) << "step " << state.step;
                    EXPECT_LT(pressure_error, 1e-7 * rate * rate) << "step " << state.step;
-                   const double area = GetParam() == Space::axisymmetric ? pi * 0.25 : 0.5;
+                   const double area = GetParam().space == Space::axisymmetric ? pi * 0.25 : 0.5;
                    EXPECT_NEAR(operators.openings.at("above").dot(state.x[0]), area * v, 1e-8 * area * rate);
                    EXPECT_NEAR(operators.openings.at("below").dot(state.x[0]), -area * v, 1e-8 * area * rate);
                    speed = {v, speed[0]};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <numbers>
+#include <string>
 
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/problem/default_weights.hpp"
@@ -18,13 +19,25 @@ struct ChannelSizes {
   static double holder(double t) { return 0.02 * std::sin(2 * std::numbers::pi * frequency * t); }
 };
 
+/// What the forms are tested on.
+struct Elements {
+  Space space = Space::plane;
+  int velocity_order = 1;
+  std::string name() const {
+    return (space == Space::axisymmetric ? "Axisymmetric" : "Plane") + std::to_string(velocity_order);
+  }
+};
+constexpr Elements all_elements[] = {
+    {Space::plane, 1}, {Space::axisymmetric, 1}, {Space::plane, 2}, {Space::axisymmetric, 2}};
+
 /// Boundary names "axis" (symmetry), "wall", "outlet" (below, with a head of 500 dyn/cm^2) and "inlet"
 /// (above).
-inline FsiProblem<2> channel_with_plate(Space space) {
+inline FsiProblem<2> channel_with_plate(Space space, int velocity_order = 1) {
   using Sizes = ChannelSizes;
   using Kind = BoundaryCondition<2>::Kind;
   FsiProblem<2> problem;
   problem.space = space;
+  problem.velocity_order = velocity_order;
   problem.fluid = {1.0, 0.05};
   problem.stabilisation = derived_weights(10.0, 1e-3);
   problem.background = tensor_mesh(spaced(0, Sizes::radius, 12), spaced(0, Sizes::height, 9),
@@ -43,12 +56,17 @@ inline FsiProblem<2> channel_with_plate(Space space) {
   return problem;
 }
 
+inline FsiProblem<2> channel_with_plate(const Elements& elements) {
+  return channel_with_plate(elements.space, elements.velocity_order);
+}
+
 /// The field `velocity` on fluid and solids, no pressure.
 template <class Field>
 Eigen::VectorXd interpolate_velocity(const Discretisation<2>& disc, Field&& velocity) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(disc.unknowns());
   const auto positions = unknown_positions(disc);
-  for (int i = 0; i < disc.fluid_unknowns(); i += 3) x.segment<2>(i) = velocity(positions[i]);
+  for (int node = 0; node < disc.velocity_nodes(); ++node)
+    x.segment<2>(disc.velocity_unknown(node, 0)) = velocity(disc.velocity_position(node));
   for (int i = disc.fluid_unknowns(); i < disc.unknowns(); i += 2) x.segment<2>(i) = velocity(positions[i]);
   return x;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fom/assembly/part_quadrature.hpp"
+#include "fom/space/velocity_element.hpp"
 #include "tests/verification/support/manufactured.hpp"
 #include "tests/verification/support/names.hpp"
 
@@ -23,18 +24,14 @@ inline FlowErrors flow_errors(const Discretisation<2>& disc, const Eigen::Vector
   double velocity = 0, gradient = 0, pressure = 0, velocity_norm = 0, gradient_norm = 0, pressure_norm = 0;
   for (int part = 0; part < static_cast<int>(disc.cut.parts.size()); ++part) {
     const auto geometry = part_geometry(disc, part);
-    const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    Eigen::Matrix<double, 3, 3> values; // column per vertex: u, v, p
-    for (int i = 0; i < 3; ++i) values.col(i) = x.segment<3>(disc.velocity_unknown(nodes[i], 0));
-    const Eigen::Matrix2d discrete_gradient = values.topRows<2>() * geometry.gradients.transpose();
     for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<2>& point, double w) {
       const auto exact = sample(flow, point);
-      const Eigen::Vector3d field = values * lambda;
-      const double difference = field[2] - exact.pressure;
+      const auto [field, discrete_gradient] = sample_velocity<2>(disc, part, geometry.gradients, lambda, x);
+      const double difference = sample_pressure<2>(disc, part, lambda, x) - exact.pressure;
       volume += w;
       mean_error += w * difference;
       mean_exact += w * exact.pressure;
-      velocity += w * (field.head<2>() - exact.velocity).squaredNorm();
+      velocity += w * (field - exact.velocity).squaredNorm();
       velocity_norm += w * exact.velocity.squaredNorm();
       gradient += w * (discrete_gradient - exact.gradient).squaredNorm();
       gradient_norm += w * exact.gradient.squaredNorm();
