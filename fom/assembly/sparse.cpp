@@ -42,4 +42,36 @@ SparseMatrix compress(int size, const Triplets& triplets) {
                                         inner.data(), values.data());
 }
 
+bool RepeatedSum::fits(int size, const Triplets& triplets, const SparseMatrix& matrix) const {
+  if (matrix.rows() != size || triplets.size() != entries_.size()) return false;
+  for (std::size_t k = 0; k < triplets.size(); ++k)
+    if (triplets[k].row() != entries_[k].first || triplets[k].col() != entries_[k].second) return false;
+  return true;
+}
+
+void RepeatedSum::sum(int size, const Triplets& triplets, SparseMatrix& matrix) {
+  if (fits(size, triplets, matrix)) {
+    double* values = matrix.valuePtr();
+    for (std::size_t k = 0; k < triplets.size(); ++k) {
+      double& value = values[places_[k]];
+      value = first_[k] ? triplets[k].value() : value + triplets[k].value();
+    }
+    return;
+  }
+  matrix = compress(size, triplets);
+  entries_.clear();
+  places_.clear();
+  first_.clear();
+  std::vector<char> met(static_cast<std::size_t>(matrix.nonZeros()), 0);
+  for (const auto& entry : triplets) {
+    const int* begin = matrix.innerIndexPtr() + matrix.outerIndexPtr()[entry.row()];
+    const int* end = matrix.innerIndexPtr() + matrix.outerIndexPtr()[entry.row() + 1];
+    const auto place = std::lower_bound(begin, end, entry.col()) - matrix.innerIndexPtr();
+    entries_.emplace_back(entry.row(), entry.col());
+    places_.push_back(static_cast<int>(place));
+    first_.push_back(!met[static_cast<std::size_t>(place)]);
+    met[static_cast<std::size_t>(place)] = 1;
+  }
+}
+
 } // namespace undula::fom

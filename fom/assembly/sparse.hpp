@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <utility>
 #include <vector>
 
 namespace undula::fom {
@@ -12,5 +13,19 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 /// Sums repeated entries, in their order, into a matrix with `size` rows and columns. Entries that sum to
 /// zero stay in the pattern.
 SparseMatrix compress(int size, const Triplets& triplets);
+
+/// The same again and again: where rows and columns of the triplets are those of the time before, in their
+/// order, every value goes straight to its place. The sums are the same bit for bit.
+class RepeatedSum {
+public:
+  void sum(int size, const Triplets& triplets, SparseMatrix& matrix);
+
+private:
+  bool fits(int size, const Triplets& triplets, const SparseMatrix& matrix) const;
+
+  std::vector<std::pair<int, int>> entries_; ///< row, column
+  std::vector<int> places_;                  ///< of the entries, among the values of the matrix
+  std::vector<char> first_;                  ///< whether an entry is the first at its place
+};
 
 } // namespace undula::fom

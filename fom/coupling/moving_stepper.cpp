@@ -63,7 +63,10 @@ Eigen::VectorXd MovingStepper<dim>::extrapolated_placement(const State& state, d
 
 template <int dim>
 void MovingStepper<dim>::solve_placed(const Eigen::VectorXd& placement, double t, double dt, State& state) {
-  operators_ = build_operators(disc_, operators_.comm, timer_);
+  if (coupling_ == Coupling::mapped)
+    move_operators(disc_, operators_, timer_);
+  else
+    operators_ = build_operators(disc_, operators_.comm, timer_);
   // A map leaves the pattern as it is: only the numbers are new.
   if (coupling_ == Coupling::mapped && stepper_ && stepper_->dt() == dt)
     stepper_->system().refresh();

@@ -306,8 +306,10 @@ std::vector<SceneKey> numerics_keys() {
       {"time.scheme", "", "time stepping", shapes_state,
        choice<FIELD(time.scheme)>({name("bdf1", TimeScheme::bdf1), name("bdf2", TimeScheme::bdf2)}, {},
                                   "bdf2")},
-      {"time.factor_every", "", "steps that share one factorisation; GMRES corrects the rest", shapes_state,
-       IntegerKey{FIELD(time.factor_every), 1, 1000, 1}},
+      {"time.factor_every", "",
+       "most steps that share one factorisation; GMRES corrects the rest, and factors that it does not get "
+       "on with are made anew",
+       shapes_state, IntegerKey{FIELD(time.factor_every), 1, 1000, 1}},
       {"time.newton_tolerance", "",
        "nonlinear solids: balance of forces at which Newton ends, relative to the internal forces",
        shapes_state, RealKey{FIELD(time.newton.tolerance), 1, between(0, 1), NewtonSettings{}.tolerance}},

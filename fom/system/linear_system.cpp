@@ -26,9 +26,14 @@ std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Opera
            {&operators.stiffness, factors.stiffness}}};
 }
 
-/// Iterations of GMRES for which old factors are good enough. Factoring costs about ten of them; where it
-/// would serve a single iteration of Newton's method, patience ends earlier.
-constexpr int most_corrections = 200, most_newton_corrections = 25;
+/// Iterations of GMRES: at most, with factors of the same matrix; and with older ones, beyond which the
+/// answer is taken from new factors. Factoring costs about ten iterations, so that factors which needed more
+/// than `worthwhile_corrections` have served their time.
+constexpr int most_corrections = 200, most_corrections_of_old = 25, worthwhile_corrections = 10;
+
+/// Of the preconditioned residual, where GMRES corrects old factors: with 1e-9 Newton's method came to a halt
+/// at 1.4e-8.
+constexpr double linear_tolerance = 1e-11;
 
 /// Of the right-hand side. Direct solves leave 1e-10, where cuts leave tiny parts up to 1e-5; an answer to
 /// another system is wrong by more than all of it.
@@ -172,7 +177,8 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(KSPCreate(operators.comm, solver_.out()), "creating the solver");
   check_petsc(KSPSetOptionsPrefix(solver_.get(), "fsi_"), "naming the solver");
   check_petsc(KSPSetType(solver_.get(), corrects ? KSPGMRES : KSPPREONLY), "choosing the solver");
-  check_petsc(KSPSetTolerances(solver_.get(), 1e-11, 1e-300, 1e10, most_corrections), "setting tolerances");
+  check_petsc(KSPSetTolerances(solver_.get(), linear_tolerance, 1e-300, 1e10, most_corrections),
+              "setting tolerances");
   PC preconditioner = nullptr;
   check_petsc(KSPGetPC(solver_.get(), &preconditioner), "getting the preconditioner");
   check_petsc(PCSetType(preconditioner, PCLU), "choosing LU");
@@ -313,7 +319,7 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     const auto scope = timer_.measure("factor");
     std::optional<QuickOrdering> ordering;
     if (disc_.interface_moves && factored_at_ < 0) ordering.emplace();
-    reuse = factored_at_ >= 0 && (iteration > 1 || (step - 1) % factor_every_ != 0);
+    reuse = factored_at_ >= 0 && (iteration > 1 || ((step - 1) % factor_every_ != 0 && !worn_));
     check_petsc(KSPSetReusePreconditioner(solver_.get(), reuse ? PETSC_TRUE : PETSC_FALSE),
                 "reusing the factors");
     // Without new operators KSPSetUp would leave the factorisation to KSPSolve, and its time to phase
@@ -321,10 +327,9 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
-    if (factor_every_ == 1)
-      check_petsc(KSPSetTolerances(solver_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
-                                   reuse ? most_newton_corrections : most_corrections),
-                  "setting tolerances");
+    check_petsc(KSPSetTolerances(solver_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                                 reuse ? most_corrections_of_old : most_corrections),
+                "setting tolerances");
   }
   const auto scope = timer_.measure("solve");
   const bool guessed = guess && reuse;
@@ -334,8 +339,13 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
   check_petsc(KSPSolve(solver_.get(), rhs_.get(), solution_.get()), "solving the system");
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
-  if (reason < 0 && reuse && iteration > 1) {
-    // The solids have moved too far from where the factors were made. What GMRES left is no guess.
+  PetscInt corrections = 0;
+  check_petsc(KSPGetIterationNumber(solver_.get(), &corrections), "asking the solver");
+  worn_ = reuse && iteration == 1 && (reason < 0 || corrections > worthwhile_corrections);
+  if (reason < 0 && reuse) {
+    // Flow or solids are too far from where the factors were made. What GMRES left is no guess.
+    if (iteration == 1) factored_at_ = step;
+    worn_ = false;
     check_petsc(KSPSetInitialGuessNonzero(solver_.get(), PETSC_FALSE), "dropping the guess");
     check_petsc(KSPSetReusePreconditioner(solver_.get(), PETSC_FALSE), "factoring anew");
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");

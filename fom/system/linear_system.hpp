@@ -52,8 +52,9 @@ public:
   /// Phases "factor" and "solve". Throws NumericsError on every rank if the solver fails, x is not finite, or
   /// the true residual is not small, whatever the solver's options.
   /// `step` decides when to factor anew: the first step after a multiple of factor_every does, so that a
-  /// restart from a state at such a multiple repeats the run. From Newton's second `iteration` of a step on
-  /// the factors stay as long as GMRES gets on with them, from `guess` if one is given.
+  /// restart from a state at such a multiple repeats the run; in between, a step after one in which GMRES did
+  /// not get on with the old factors. From Newton's second `iteration` of a step on the factors stay as long
+  /// as it does, from `guess` if one is given.
   Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step, int iteration = 1,
                         const Eigen::VectorXd* guess = nullptr);
 
@@ -74,6 +75,7 @@ private:
   PhaseTimer& timer_;
   int factor_every_;
   int factored_at_ = -1;
+  bool worn_ = false;                             ///< GMRES has needed as long as new factors take
   std::vector<int> row_begin_, columns_;          ///< pattern of this rank's share, natural numbering
   std::vector<int> flow_places_, tangent_places_; ///< of visited entries in the pattern, in their order
   std::vector<double> constant_;                  ///< for the current factors, by place in the pattern

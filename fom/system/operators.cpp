@@ -28,6 +28,40 @@ void reserve_entries(const Discretisation<dim>& disc, Triplets& mass, Triplets& 
 
 } // namespace
 
+namespace {
+
+/// What a domain that moves by a map changes.
+template <int dim>
+void integrate_fluid(const Discretisation<dim>& disc, Operators<dim>& operators, Triplets& mass,
+                     Triplets& physical, Triplets& stabilisation) {
+  const Share share{&operators.ownership.owner, operators.rank};
+  reserve_entries(disc, mass, physical, stabilisation);
+  operators.geometries = part_geometries(disc);
+  const std::span<const PartGeometry<dim>> geometries = operators.geometries;
+  const bool linear = disc.problem.velocity_order == 1, moved = !disc.map.is_identity();
+  if (linear) operators.moments.assign(disc.cut.parts.size(), PartMoments<dim>::value_type::Zero());
+  operators.widening = moved ? operators.moments : PartMoments<dim>();
+  for (const int part : operators.own_parts) {
+    if (!linear) {
+      add_quadratic_part(disc, part, geometries[part], mass, physical);
+      continue;
+    }
+    const auto integrals = integrate_part(disc, part, geometries[part]);
+    operators.moments[part] = integrals.moments;
+    if (moved) operators.widening[part] = integrals.widening;
+    add_fluid_mass(disc, part, integrals, mass);
+    add_fluid_viscosity_and_pressure(disc, part, geometries[part], integrals, physical);
+  }
+  mass.insert(mass.end(), operators.solid_mass.begin(), operators.solid_mass.end());
+  add_fluid_stabilisation<dim>(disc, share, geometries, stabilisation);
+  if (disc.problem.flow == FlowModel::navier_stokes &&
+      disc.problem.stabilisation.velocity_scale == VelocityScale::local)
+    operators.velocity_jumps = velocity_jumps(disc, share, geometries);
+  add_interface<dim>(disc, share, geometries, physical, stabilisation);
+}
+
+} // namespace
+
 template <int dim>
 Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, PhaseTimer& timer) {
   const auto scope = timer.measure("assemble");
@@ -38,38 +72,15 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   MPI_Comm_rank(comm, &operators.rank);
   operators.ownership = distribute_unknowns(disc, ranks);
   const Share share{&operators.ownership.owner, operators.rank};
+  for (std::size_t p = 0; p < disc.cut.parts.size(); ++p)
+    if (share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0)))
+      operators.own_parts.push_back(static_cast<int>(p));
 
-  const std::size_t parts = disc.cut.parts.size();
-  operators.geometries = part_geometries(disc);
-  const std::span<const PartGeometry<dim>> geometries = operators.geometries;
-  const bool linear = disc.problem.velocity_order == 1;
-  if (linear) operators.moments.assign(parts, PartMoments<dim>::value_type::Zero());
-  if (!disc.map.is_identity()) operators.widening = operators.moments;
-  const int size = disc.unknowns();
-  Triplets mass, physical, stabilisation, damping, stiffness;
-  reserve_entries(disc, mass, physical, stabilisation);
-  for (std::size_t p = 0; p < parts; ++p) {
-    if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0))) continue;
-    const int part = static_cast<int>(p);
-    operators.own_parts.push_back(part);
-    if (!linear) {
-      add_quadratic_part(disc, part, geometries[p], mass, physical);
-      continue;
-    }
-    const auto integrals = integrate_part(disc, part, geometries[p]);
-    operators.moments[p] = integrals.moments;
-    if (!disc.map.is_identity()) operators.widening[p] = integrals.widening;
-    add_fluid_mass(disc, part, integrals, mass);
-    add_fluid_viscosity_and_pressure(disc, part, geometries[p], integrals, physical);
-  }
   using Body = SolidBody<dim>;
-  const SolidFactor<dim> everywhere = [](const Body&) { return 1.0; };
-  add_solid_mass<dim>(disc, share, everywhere, mass);
-  add_fluid_stabilisation<dim>(disc, share, geometries, stabilisation);
-  if (disc.problem.flow == FlowModel::navier_stokes &&
-      disc.problem.stabilisation.velocity_scale == VelocityScale::local)
-    operators.velocity_jumps = velocity_jumps(disc, share, geometries);
-  add_interface<dim>(disc, share, geometries, physical, stabilisation);
+  add_solid_mass<dim>(
+      disc, share, [](const Body&) { return 1.0; }, operators.solid_mass);
+  Triplets mass, physical, stabilisation, damping, stiffness;
+  integrate_fluid(disc, operators, mass, physical, stabilisation);
   add_solid_mass<dim>(
       disc, share, [](const Body& body) { return body.properties.mass_damping; }, damping);
   add_solid_stiffness<dim>(
@@ -83,6 +94,7 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
       disc, share, [](const Body& body) { return is_nonlinear(body.model) ? 0.0 : 1.0; }, stiffness);
   operators.has_nonlinear_solid = has_nonlinear_solid(disc);
   operators.nonlinear_cells = nonlinear_cells(disc, share);
+  const int size = disc.unknowns();
   operators.mass = compress(size, mass);
   operators.physical = compress(size, physical);
   operators.stabilisation = compress(size, stabilisation);
@@ -97,6 +109,18 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   return operators;
 }
 
+template <int dim>
+void move_operators(const Discretisation<dim>& disc, Operators<dim>& operators, PhaseTimer& timer) {
+  const auto scope = timer.measure("assemble");
+  Triplets mass, physical, stabilisation;
+  integrate_fluid(disc, operators, mass, physical, stabilisation);
+  const int size = disc.unknowns();
+  operators.mass_sum.sum(size, mass, operators.mass);
+  operators.physical_sum.sum(size, physical, operators.physical);
+  operators.stabilisation_sum.sum(size, stabilisation, operators.stabilisation);
+}
+
 template Operators<2> build_operators(const Discretisation<2>&, MPI_Comm, PhaseTimer&);
+template void move_operators(const Discretisation<2>&, Operators<2>&, PhaseTimer&);
 
 } // namespace undula::fom

@@ -38,11 +38,18 @@ struct Operators {
   std::vector<PartGeometry<dim>> geometries;       ///< by part, moved
   VelocityJumps<dim> velocity_jumps;               ///< of the share, where the local velocity scales them
   std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
+  Triplets solid_mass;                             ///< the part of `mass` that no map changes
+  RepeatedSum mass_sum, physical_sum, stabilisation_sum; ///< for move_operators
 };
 
 /// Collective over `comm`. Phase "assemble".
 template <int dim>
 Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, PhaseTimer& timer);
+
+/// The operators of the same cut after disc.map has changed. The openings do not move. Collective. Phase
+/// "assemble".
+template <int dim>
+void move_operators(const Discretisation<dim>& disc, Operators<dim>& operators, PhaseTimer& timer);
 
 /// Whether `visit_convection` has entries: fluid that convects, or a domain that moves by a map.
 template <int dim>
