@@ -126,11 +126,12 @@ std::string table_text(const SolvedRun& run) {
   for (const PeriodSummary& period : run.periods) {
     rows.push_back({std::to_string(period.period), decimals(period.outflow_l_per_min, 4),
                     decimals(period.inflow_l_per_min, 4), decimals(period.spread_l_per_min, 3),
-                    decimals(100 * period.energy_gap, 3), decimals(period.speed_max_cm_per_s, 1),
-                    decimals(period.clearance_min_mm, 4)});
+                    decimals(100 * period.energy_gap, 3),
+                    std::isfinite(period.scheme_loss) ? decimals(100 * period.scheme_loss, 3) : "-",
+                    decimals(period.speed_max_cm_per_s, 1), decimals(period.clearance_min_mm, 4)});
   }
   return text_table({"period", "outflow (l/min)", "inflow (l/min)", "spread (l/min)", "energy gap (%)",
-                     "max speed (cm/s)", "min clearance (mm)"},
+                     "of the scheme (%)", "max speed (cm/s)", "min clearance (mm)"},
                     rows) +
          mean_text(settled_mean(flows_of(run.periods)));
 }
@@ -154,6 +155,9 @@ std::string json_text(const SolvedRun& run, const PhaseTimer& timer) {
                                  {"energy_gap", period.energy_gap},
                                  {"speed_max_cm_per_s", period.speed_max_cm_per_s},
                                  {"clearance_min_mm", period.clearance_min_mm}});
+    if (std::isfinite(period.scheme_loss)) {
+      result["periods"].back()["scheme_loss"] = period.scheme_loss;
+    }
     if (std::isfinite(period.film_elements_min)) {
       result["periods"].back()["film_elements_min"] = period.film_elements_min;
       result["periods"].back()["film_unresolved_percent"] = period.film_unresolved_percent;

@@ -132,6 +132,7 @@ LevelView FiniteElementLevel::view(const Scene& scene) const {
   view.rows.recut = view.rows.pump && (coupling_ == Coupling::explicit_ || coupling_ == Coupling::implicit);
   view.rows.blood = prepared_->observation.blood.has_value();
   for (const auto& wall : prepared_->observation.walls) view.walls.push_back(wall.points);
+  view.rows.elements = true;
   view.rows.voltage = scene.operating_point.drive == Drive::voltage;
   view.solid_fields = [&disc](const State& state) { return solid_fields(disc, state); };
   return view;

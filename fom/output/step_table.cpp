@@ -12,8 +12,8 @@ constexpr double mW_per_uJ_per_s = 1e-3;
 
 /// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves,
 /// those whose solids move through the elements, those driven by a voltage, pumps
-/// whose fluid has a resolved stress.
-enum class In { all, pump, general, moving, recut, voltage, blood };
+/// whose fluid has a resolved stress, finite elements.
+enum class In { all, pump, general, moving, recut, voltage, blood, elements };
 
 struct Column {
   const char* name;
@@ -40,6 +40,8 @@ constexpr Column columns[] = {
      true},
     {"stabilisation_power_mW",
      [](const Observation& o) { return units::power_to_mW(o.energy.stabilisation); }, In::all, true},
+    {"scheme_power_mW", [](const Observation& o) { return units::power_to_mW(o.energy.scheme); },
+     In::elements, true},
     {"damping_power_mW", [](const Observation& o) { return units::power_to_mW(o.energy.damping); }, In::all,
      true},
     {"carried_power_mW", [](const Observation& o) { return units::power_to_mW(o.energy.carried); }, In::all,
@@ -98,6 +100,8 @@ bool has(const RowLayout& layout, const Column& column) {
       return layout.blood;
     case In::voltage:
       return layout.voltage;
+    case In::elements:
+      return layout.elements;
     case In::all:
       break;
   }
@@ -186,6 +190,8 @@ std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_
       if (value.has(name)) spent += mean(name);
     const double gap = holder + opening - spent - growth;
     period.energy_gap = period.input_power_mW != 0 ? gap / period.input_power_mW : 0.0;
+    if (value.has("scheme_power_mW") && period.input_power_mW != 0)
+      period.scheme_loss = mean("scheme_power_mW") / period.input_power_mW;
     period.speed_max_cm_per_s = extremes("speed_max_cm_per_s").second;
     period.clearance_min_mm = extremes("clearance_min_mm").first;
     if (value.has("film_elements")) {

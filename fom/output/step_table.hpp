@@ -15,8 +15,9 @@ struct RowLayout {
   bool moving = false;    ///< the fluid's domain moves
   bool recut = false;     ///< solids move through the elements
   std::vector<GeneralColumn> general;
-  bool blood = false;   ///< a pump whose fluid has a resolved stress
-  bool voltage = false; ///< the holder is driven by a voltage
+  bool blood = false;    ///< a pump whose fluid has a resolved stress
+  bool voltage = false;  ///< the holder is driven by a voltage
+  bool elements = false; ///< finite elements, whose scheme's own loss is known
 };
 
 /// Columns of time_series.csv, without "step".
@@ -36,6 +37,8 @@ struct PeriodSummary {
   /// elastic energy) as a part of the input power: what the time scheme dissipates, and errors. 0 without
   /// input.
   double energy_gap = 0;
+  /// The part of it that the time scheme takes by itself (EnergyTerms::scheme); NaN without finite elements.
+  double scheme_loss = std::numeric_limits<double>::quiet_NaN();
   double speed_max_cm_per_s = 0;
   double clearance_min_mm = 0;
   /// As in CurvePoint; NaN where solids do not move through the elements.

@@ -37,7 +37,7 @@ constexpr StabilisationWeights published_weights(double speed, double time) {
 /// Of quadratic velocities, whatever they start from otherwise: the pair with a linear pressure is stable by
 /// itself, so that penalties remain at cuts alone. Nitsche's grows as the inverse inequality of the degree.
 constexpr StabilisationWeights of_quadratic_velocities(StabilisationWeights weights) {
-  weights.velocity_jump = 0;
+  weights.velocity_jump = 0.001;
   weights.pressure_jump = 0;
   weights.divergence = 0;
   weights.nitsche_viscous = 40;

@@ -30,10 +30,20 @@ EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& 
                         damping = operators_.damping * x, elastic = operators_.stiffness * state.d[0];
   const Eigen::VectorXd load = loads_at(disc_, operators_, state.time);
 
-  Eigen::VectorXd sums(7);
+  const bool second = alpha_[2] != 0;
+  const auto roughness = [&](const Eigen::VectorXd& now, const Eigen::VectorXd& before,
+                             const Eigen::VectorXd& older) -> Eigen::VectorXd {
+    if (second) return now - 2 * before + older;
+    return now - before;
+  };
+  const Eigen::VectorXd rough_x = roughness(x, state.x[1], older_x_),
+                        rough_d = roughness(state.d[0], state.d[1], older_d_);
+  Eigen::VectorXd sums(8);
   sums << x.dot(physical), x.dot(penalties), x.dot(damping), 0.5 * x.dot(operators_.mass * x),
       0.5 * state.d[0].dot(elastic), carried_power(disc_, operators_, convecting_, x),
-      contact_ ? x.dot(contact_->stiffness * state.d[0]) : 0.0;
+      contact_ ? x.dot(contact_->stiffness * state.d[0]) : 0.0,
+      (rough_x.dot(operators_.mass * rough_x) + rough_d.dot(operators_.stiffness * rough_d)) /
+          ((second ? 4 : 2) * dt_);
   sum_over_ranks(operators_.comm, sums);
   EnergyTerms terms;
   terms.viscous = sums[0];
@@ -41,6 +51,7 @@ EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& 
   terms.damping = sums[2];
   terms.kinetic = sums[3];
   terms.elastic = sums[4];
+  terms.scheme = sums[7];
   if (contact_) terms.contact = sums[6] - x.dot(contact_->load);
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
