@@ -117,6 +117,31 @@ TEST(TimeStepper, GoesOnAfterARestartAsIfItHadNotStopped) {
   }
 }
 
+/// What comes in and is not dissipated is the growth of Dahlquist's energy and what the scheme takes, step by
+/// step: ((3 x - 4 x' + x'') / 2, x) = (|x|^2 + |2 x - x'|^2 - |x'|^2 - |2 x' - x''|^2) / 4 + |x - 2 x' +
+/// x''|^2 / 4.
+TEST(TimeStepper, WhatTheSchemeTakesClosesTheBalanceOfEnergy) {
+  Channel run;
+  TimeStepper<2> stepper(run.disc, run.operators, TimeScheme::bdf2, dt, 1, run.timer);
+  State state = initial_state(run.disc);
+  const auto stored = [&](const State& at) {
+    const auto norm = [](const SparseMatrix& matrix, const Eigen::VectorXd& x) { return x.dot(matrix * x); };
+    return 0.25 *
+           (norm(run.operators.mass, at.x[0]) + norm(run.operators.mass, 2 * at.x[0] - at.x[1]) +
+            norm(run.operators.stiffness, at.d[0]) + norm(run.operators.stiffness, 2 * at.d[0] - at.d[1]));
+  };
+  for (int k = 0; k < 3; ++k) stepper.advance(state);
+  for (int k = 0; k < 5; ++k) {
+    const double before = stored(state);
+    stepper.advance(state);
+    const auto terms = stepper.energy(state, stepper.residual(state));
+    const double in = terms.holder + terms.boundary + terms.opening + terms.body,
+                 spent = terms.viscous + terms.stabilisation + terms.damping + terms.carried;
+    EXPECT_GT(terms.scheme, 1e-3 * std::abs(in));
+    EXPECT_NEAR((in - spent) * dt, stored(state) - before + terms.scheme * dt, 1e-6 * std::abs(in) * dt);
+  }
+}
+
 TEST(TimeStepper, KeepsAFactorisationWithoutChangingTheAnswer) {
   Channel run;
   const auto every = run.march(TimeScheme::bdf2, 10, 1), fifth = run.march(TimeScheme::bdf2, 10, 5);
