@@ -82,9 +82,10 @@ std::vector<CheckedWeight> checked_weights(const Scene& scene, const Stabilisati
     }
     const bool filled_in = real->field(stated) != real->field(used); // a scale of 0
     weights.push_back({key.leaf(), plain_number(to_surface_unit(real->field(used), real->cgs_per_unit)),
-                       filled_in                         ? "derived"
-                       : scene.places.contains(key.path) ? "stated"
-                                                         : start});
+                       filled_in                                      ? "derived"
+                       : scene.places.contains(key.path)              ? "stated"
+                       : scene.velocity_order == 2 && real->quadratic ? "order 2"
+                                                                      : start});
   }
   weights.push_back({"velocity_scale",
                      in_force.velocity_scale == VelocityScale::local ? "local" : "reference",

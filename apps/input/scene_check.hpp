@@ -25,7 +25,7 @@ struct CheckedMesh {
 struct CheckedWeight {
   std::string key;    ///< of section [stabilisation], without the section
   std::string value;  ///< in force, in the unit of the key
-  std::string origin; ///< "stated", "derived" or "published"
+  std::string origin; ///< "stated", "derived", "published" or "order 2"
 };
 
 struct SceneCheck {

@@ -1,7 +1,6 @@
 #include "fom/assembly/sparse.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace undula::fom {
 
@@ -43,7 +42,8 @@ SparseMatrix compress(int size, const Triplets& triplets) {
 }
 
 bool RepeatedSum::fits(int size, const Triplets& triplets, const SparseMatrix& matrix) const {
-  if (matrix.rows() != size || triplets.size() != entries_.size()) return false;
+  if (matrix.rows() != size || matrix.nonZeros() != non_zeros_ || triplets.size() != entries_.size())
+    return false;
   for (std::size_t k = 0; k < triplets.size(); ++k)
     if (triplets[k].row() != entries_[k].first || triplets[k].col() != entries_[k].second) return false;
   return true;
@@ -59,6 +59,7 @@ void RepeatedSum::sum(int size, const Triplets& triplets, SparseMatrix& matrix) 
     return;
   }
   matrix = compress(size, triplets);
+  non_zeros_ = matrix.nonZeros();
   entries_.clear();
   places_.clear();
   first_.clear();

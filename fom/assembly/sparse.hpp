@@ -25,6 +25,7 @@ private:
 
   std::vector<std::pair<int, int>> entries_; ///< row, column
   std::vector<int> places_;                  ///< of the entries, among the values of the matrix
+  Eigen::Index non_zeros_ = -1;              ///< of the matrix that they were found in
   std::vector<char> first_;                  ///< whether an entry is the first at its place
 };
 

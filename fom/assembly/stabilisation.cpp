@@ -26,6 +26,13 @@ void for_each_patch(const Discretisation<dim>& disc, const Share& share,
   }
 }
 
+template <int dim>
+bool jumps_scale_with_the_flow(const FsiProblem<dim>& problem) {
+  return problem.flow == FlowModel::navier_stokes &&
+         problem.stabilisation.velocity_scale == VelocityScale::local &&
+         problem.stabilisation.velocity_jump > 0;
+}
+
 /// Weights of the squared jumps at a facet, but for its area.
 struct JumpWeights {
   double normal = 0;        ///< of the velocity's first derivative along the normal
@@ -88,7 +95,8 @@ void add_fluid_stabilisation(const Discretisation<dim>& disc, const Share& share
           return;
         }
         // Jumps that the flow scales need their places in the pattern.
-        if (velocity.normal == 0 && velocity.divergence == 0 && w.velocity_jump == 0) return;
+        if (velocity.normal == 0 && velocity.divergence == 0 && !jumps_scale_with_the_flow(disc.problem))
+          return;
         const auto both = quadratic_patch(disc, connection, patch, geometries[connection.part[0]],
                                           geometries[connection.part[1]]);
         for (int q = 0; q < QuadraticPatch<dim>::points; ++q)
@@ -105,7 +113,7 @@ VelocityJumps<dim> velocity_jumps(const Discretisation<dim>& disc, const Share& 
   const bool quadratic = disc.problem.velocity_order == 2;
   const Measure measure = measure_of(disc.problem.space);
   VelocityJumps<dim> jumps;
-  if (weight == 0) return jumps;
+  if (!jumps_scale_with_the_flow(disc.problem)) return jumps;
   if (quadratic)
     jumps.quadratic.reserve(disc.cut.connections.size());
   else

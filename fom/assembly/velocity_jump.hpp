@@ -40,7 +40,7 @@ struct VelocityJumps {
   bool empty() const { return linear.empty() && quadratic.empty(); }
 };
 
-/// Of all facets of the share.
+/// Of all facets of the share; none where no local velocity scales them, or nothing convects.
 template <int dim>
 VelocityJumps<dim> velocity_jumps(const Discretisation<dim>& disc, const Share& share,
                                   std::span<const PartGeometry<dim>> geometries);

@@ -24,7 +24,7 @@ struct UnfoldingSettings {
   double weight = 0.1;       ///< of the barrier against the elastic energy
   double skin_penalty = 200; ///< holds the correction off the skin
   double tolerance = 1e-4;   ///< of the last change, relative to the largest displacement
-  int max_iterations = 60;
+  int max_iterations = 400;
 };
 
 template <int dim>

@@ -35,7 +35,8 @@ constexpr StabilisationWeights published_weights(double speed, double time) {
 }
 
 /// Of quadratic velocities, whatever they start from otherwise: the pair with a linear pressure is stable by
-/// itself, so that penalties remain at cuts alone. Nitsche's grows as the inverse inequality of the degree.
+/// itself, so that penalties stay at cuts, and a small one on jumps of the velocity. Nitsche's grows as the
+/// inverse inequality of the degree.
 constexpr StabilisationWeights of_quadratic_velocities(StabilisationWeights weights) {
   weights.velocity_jump = 0.001;
   weights.pressure_jump = 0;

@@ -47,7 +47,7 @@ struct ContactSettings {
 /// What a step of the finite-element level needs to know.
 struct SteppingSettings {
   TimeScheme scheme = TimeScheme::bdf2;
-  int factor_every = 1; ///< steps that share one factorisation; the rest is left to GMRES
+  int factor_every = 1; ///< most steps that share one factorisation; the rest is left to GMRES
   NewtonSettings newton;
   MotionSettings motion;
 };

@@ -308,7 +308,7 @@ std::vector<SceneKey> numerics_keys() {
                                   "bdf2")},
       {"time.factor_every", "",
        "most steps that share one factorisation; GMRES corrects the rest, and factors that it does not get "
-       "on with are made anew",
+       "on with are made anew; domains that move factor every step",
        shapes_state, IntegerKey{FIELD(time.factor_every), 1, 1000, 1}},
       {"time.newton_tolerance", "",
        "nonlinear solids: balance of forces at which Newton ends, relative to the internal forces",

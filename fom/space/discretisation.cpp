@@ -132,6 +132,7 @@ void require_order(const FsiProblem<dim>& problem) {
 CutOptions good_enough(CutOptions options, int velocity_order) {
   if (velocity_order == 1) return options;
   options.volume_degree = std::max(options.volume_degree, 6);
+  options.interface_degree = std::max(options.interface_degree, 6);
   options.boundary_degree = std::max(options.boundary_degree, 7);
   return options;
 }

@@ -29,7 +29,7 @@ std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Opera
 /// Iterations of GMRES: at most, with factors of the same matrix; and with older ones, beyond which the
 /// answer is taken from new factors. Factoring costs about ten iterations, so that factors which needed more
 /// than `worthwhile_corrections` have served their time.
-constexpr int most_corrections = 200, most_corrections_of_old = 25, worthwhile_corrections = 10;
+constexpr PetscInt most_corrections = 200, most_corrections_of_old = 25, worthwhile_corrections = 10;
 
 /// Of the preconditioned residual, where GMRES corrects old factors: with 1e-9 Newton's method came to a halt
 /// at 1.4e-8.
@@ -185,6 +185,8 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS), "choosing MUMPS");
   check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
   check_petsc(KSPSetFromOptions(solver_.get()), "reading -fsi_ options");
+  check_petsc(KSPGetTolerances(solver_.get(), nullptr, nullptr, nullptr, &most_iterations_),
+              "asking the solver");
 }
 
 template <int dim>
@@ -327,9 +329,10 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
-    check_petsc(KSPSetTolerances(solver_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
-                                 reuse ? most_corrections_of_old : most_corrections),
-                "setting tolerances");
+    check_petsc(
+        KSPSetTolerances(solver_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                         std::min(most_iterations_, reuse ? most_corrections_of_old : most_corrections)),
+        "setting tolerances");
   }
   const auto scope = timer_.measure("solve");
   const bool guessed = guess && reuse;
@@ -341,7 +344,10 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
   PetscInt corrections = 0;
   check_petsc(KSPGetIterationNumber(solver_.get(), &corrections), "asking the solver");
-  worn_ = reuse && iteration == 1 && (reason < 0 || corrections > worthwhile_corrections);
+  if (!reuse)
+    worn_ = false;
+  else if (iteration == 1) // later ones of Newton say nothing of the next step
+    worn_ = reason < 0 || corrections > worthwhile_corrections;
   if (reason < 0 && reuse) {
     // Flow or solids are too far from where the factors were made. What GMRES left is no guess.
     if (iteration == 1) factored_at_ = step;

@@ -27,8 +27,8 @@ struct SystemFactors {
 template <int dim>
 class LinearSystem {
 public:
-  /// Collective. `factor_every` > 1 keeps a numerical factorisation for that many steps and corrects by
-  /// GMRES. So do Newton's iterations of one step.
+  /// Collective. `factor_every` > 1 keeps a numerical factorisation for at most that many steps and corrects
+  /// by GMRES. So do Newton's iterations of one step.
   LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators, int factor_every,
                PhaseTimer& timer);
 
@@ -75,6 +75,7 @@ private:
   PhaseTimer& timer_;
   int factor_every_;
   int factored_at_ = -1;
+  PetscInt most_iterations_ = 0;                  ///< that -fsi_ options allow
   bool worn_ = false;                             ///< GMRES has needed as long as new factors take
   std::vector<int> row_begin_, columns_;          ///< pattern of this rank's share, natural numbering
   std::vector<int> flow_places_, tangent_places_; ///< of visited entries in the pattern, in their order

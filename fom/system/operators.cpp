@@ -26,10 +26,6 @@ void reserve_entries(const Discretisation<dim>& disc, Triplets& mass, Triplets& 
   stabilisation.reserve(disc.cut.connections.size() * pair * pair * (dim * dim + 1) + pieces * piece * piece);
 }
 
-} // namespace
-
-namespace {
-
 /// What a domain that moves by a map changes.
 template <int dim>
 void integrate_fluid(const Discretisation<dim>& disc, Operators<dim>& operators, Triplets& mass,
@@ -54,9 +50,7 @@ void integrate_fluid(const Discretisation<dim>& disc, Operators<dim>& operators,
   }
   mass.insert(mass.end(), operators.solid_mass.begin(), operators.solid_mass.end());
   add_fluid_stabilisation<dim>(disc, share, geometries, stabilisation);
-  if (disc.problem.flow == FlowModel::navier_stokes &&
-      disc.problem.stabilisation.velocity_scale == VelocityScale::local)
-    operators.velocity_jumps = velocity_jumps(disc, share, geometries);
+  operators.velocity_jumps = velocity_jumps(disc, share, geometries);
   add_interface<dim>(disc, share, geometries, physical, stabilisation);
 }
 

@@ -33,7 +33,7 @@ struct Operators {
   bool has_nonlinear_solid = false;       ///< on any rank
   std::vector<SolidCell> nonlinear_cells; ///< of the share
   PartMoments<dim> moments;               ///< of linear velocities; else empty
-  PartMoments<dim> widening;  ///< moments with the weight div w, w the velocity of the map; empty: identity
+  PartMoments<dim> widening;  ///< moments with the weight div w, w the velocity of the map; else empty
   std::vector<int> own_parts; ///< parts of the share
   std::vector<PartGeometry<dim>> geometries;       ///< by part, moved
   VelocityJumps<dim> velocity_jumps;               ///< of the share, where the local velocity scales them

@@ -26,6 +26,11 @@ void require_trainable(const Scene& scene) {
          "a model.solid with a nonlinear law", "solid = \"linear\"", "model");
   refuse(scene.contact.film > 0, "a reduced model knows no contact", "contact.film_mm > 0",
          "no film, contact.film_mm = 0", "contact");
+  refuse(scene.velocity_order == 2 &&
+             scene.training.pressure_stability == PressureStability::projected_stabilisation,
+         "quadratic velocities have no stabilisation of the pressure that could be projected",
+         "space.order = 2 with pressure_stability = \"projected-stabilisation\"",
+         "pressure_stability = \"supremizers\", or order = 1", "training");
   refuse(scene.stabilisation.velocity_scale != VelocityScale::reference,
          "a reduced model is projected from penalties that do not depend on the flow",
          "stabilisation.velocity_scale = \"local\"", "weights = \"published\"", "stabilisation");
