@@ -22,9 +22,9 @@ struct QuadraticPatch {
   using Form = Eigen::Matrix<double, nodes_of_both, 1>;
 
   std::array<int, nodes_of_both> nodes; ///< velocity nodes
-  /// By point: jump of the gradient (first part minus second), its part along the normal, and the trace.
+  /// By point: jump of the gradient (first part minus second) and its part along the normal.
   std::array<Eigen::Matrix<double, dim, nodes_of_both>, points> gradient_jump;
-  std::array<Form, points> normal_jump, trace;
+  std::array<Form, points> normal_jump;
   /// Barycentric coordinates of the points in the first part.
   std::array<typename Element::Barycentric, points> lambda;
   Form second_jump = Form::Zero();     ///< of the second derivative along the normal, constant on the facet
@@ -42,10 +42,7 @@ QuadraticPatch<dim> quadratic_patch(const Discretisation<dim>& disc, const Facet
   const std::array<double, Patch::points> along{0.5 - gauss, 0.5 + gauss};
   const auto& on_facet = disc.cut.facets.facets[connection.facet].points;
   Patch patch;
-  for (int q = 0; q < Patch::points; ++q) {
-    patch.gradient_jump[q].setZero();
-    patch.trace[q].setZero();
-  }
+  for (auto& jump : patch.gradient_jump) jump.setZero();
   int count = 0;
   for (int side = 0; side < 2; ++side) {
     const int part = connection.part[side];
@@ -70,8 +67,6 @@ QuadraticPatch<dim> quadratic_patch(const Discretisation<dim>& disc, const Facet
       for (int i = 0; i < Element::nodes; ++i)
         patch.gradient_jump[q].col(place[i]) += sign * gradients.col(i);
       if (side > 0) continue;
-      const auto values = Element::values(lambda);
-      for (int i = 0; i < Element::nodes; ++i) patch.trace[q][place[i]] = values[i];
       patch.lambda[q] = lambda;
       patch.radius[q] = geometry.corners.row(0).dot(lambda);
     }

@@ -127,13 +127,16 @@ VelocityJumps<dim> velocity_jumps(const Discretisation<dim>& disc, const Share& 
                      return;
                    }
                    QuadraticVelocityJump<dim> jump;
-                   jump.patch = quadratic_patch(disc, connection, patch, geometries[connection.part[0]],
-                                                geometries[connection.part[1]]);
+                   const auto both = quadratic_patch(disc, connection, patch, geometries[connection.part[0]],
+                                                     geometries[connection.part[1]]);
+                   jump.nodes = both.nodes;
+                   jump.normal_jump = both.normal_jump;
+                   jump.lambda = both.lambda;
                    jump.normal = patch.normal;
                    jump.part = connection.part[0];
                    for (int q = 0; q < QuadraticPatch<dim>::points; ++q)
                      jump.weight[q] =
-                         by_area * patch.area * measure(jump.patch.radius[q]) / QuadraticPatch<dim>::points;
+                         by_area * patch.area * measure(both.radius[q]) / QuadraticPatch<dim>::points;
                    jumps.quadratic.push_back(std::move(jump));
                  });
   return jumps;

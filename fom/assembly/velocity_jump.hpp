@@ -26,10 +26,13 @@ struct VelocityJump {
 /// The same of a quadratic velocity, whose jump varies along the facet.
 template <int dim>
 struct QuadraticVelocityJump {
-  QuadraticPatch<dim> patch;
+  using Patch = QuadraticPatch<dim>;
+  std::array<int, Patch::nodes_of_both> nodes; ///< as in QuadraticPatch, as what follows
+  std::array<typename Patch::Form, Patch::points> normal_jump;
+  std::array<typename Patch::Element::Barycentric, Patch::points> lambda;
   Point<dim> normal;
   int part = 0; ///< the first
-  std::array<double, QuadraticPatch<dim>::points> weight{};
+  std::array<double, Patch::points> weight{};
 };
 
 /// Of the velocities' degree; the other list is empty.
@@ -69,26 +72,23 @@ void visit_velocity_jumps(const Discretisation<dim>& disc, const VelocityJumps<d
           f(disc.velocity_unknown(jump.nodes[i], c), disc.velocity_unknown(jump.nodes[j], c), value);
       }
   }
+  using Element = VelocityElement<dim, 2>;
   constexpr int nodes = QuadraticPatch<dim>::nodes_of_both;
   for (const auto& jump : jumps.quadratic) {
     Eigen::Matrix<double, dim, dim + 1> domain;
     if (moved) domain = domain_velocity(disc, jump.part);
+    const auto velocity = Element::coefficients(disc, jump.part, b);
     Eigen::Matrix<double, nodes, nodes> local = Eigen::Matrix<double, nodes, nodes>::Zero();
     for (int q = 0; q < QuadraticPatch<dim>::points; ++q) {
-      double across = 0;
-      for (int i = 0; i < nodes; ++i)
-        if (jump.patch.trace[q][i] != 0)
-          across += jump.patch.trace[q][i] *
-                    b.template segment<dim>(disc.velocity_unknown(jump.patch.nodes[i], 0)).dot(jump.normal);
-      if (moved) across -= (domain * jump.patch.lambda[q]).dot(jump.normal);
-      const auto& form = jump.patch.normal_jump[q];
-      local.noalias() += (jump.weight[q] * std::abs(across) * form) * form.transpose();
+      Point<dim> relative = velocity * Element::values(jump.lambda[q]);
+      if (moved) relative -= domain * jump.lambda[q];
+      const auto& form = jump.normal_jump[q];
+      local.noalias() += (jump.weight[q] * std::abs(relative.dot(jump.normal)) * form) * form.transpose();
     }
     for (int i = 0; i < nodes; ++i)
       for (int j = 0; j < nodes; ++j)
         for (int c = 0; c < dim; ++c)
-          f(disc.velocity_unknown(jump.patch.nodes[i], c), disc.velocity_unknown(jump.patch.nodes[j], c),
-            local(i, j));
+          f(disc.velocity_unknown(jump.nodes[i], c), disc.velocity_unknown(jump.nodes[j], c), local(i, j));
   }
 }
 

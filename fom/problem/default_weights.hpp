@@ -8,7 +8,10 @@ namespace undula::fom {
 /// Weights that work from Re 0 to 1000 (docs/writing_a_scene.md): convection is penalised by the flow across
 /// a facet, so that a fluid at rest or along a wall is left alone. `speed` (cm/s): of the fastest flow, see
 /// stated_speed; `step` (s): the time step, however long.
-constexpr StabilisationWeights derived_weights(double speed, double step) {
+///
+/// With `velocity_order` 2 the pair with a linear pressure is stable by itself: penalties stay at cuts, and a
+/// small one on jumps of the velocity. Nitsche's grows as the inverse inequality of the degree.
+constexpr StabilisationWeights derived_weights(double speed, double step, int velocity_order = 1) {
   StabilisationWeights weights;
   weights.velocity_jump = 0.01;
   weights.pressure_jump = 0.05;
@@ -21,6 +24,11 @@ constexpr StabilisationWeights derived_weights(double speed, double step) {
   weights.reference_velocity = speed;
   weights.reference_time = step;
   weights.velocity_scale = VelocityScale::local;
+  if (velocity_order == 2) {
+    weights.velocity_jump = 0.001;
+    weights.pressure_jump = weights.divergence = 0;
+    weights.nitsche_viscous = 40;
+  }
   return weights;
 }
 
@@ -31,17 +39,6 @@ constexpr StabilisationWeights published_weights(double speed, double time) {
   weights.velocity_jump = 0.05;
   weights.divergence = 0.05;
   weights.velocity_scale = VelocityScale::reference;
-  return weights;
-}
-
-/// Of quadratic velocities, whatever they start from otherwise: the pair with a linear pressure is stable by
-/// itself, so that penalties stay at cuts, and a small one on jumps of the velocity. Nitsche's grows as the
-/// inverse inequality of the degree.
-constexpr StabilisationWeights of_quadratic_velocities(StabilisationWeights weights) {
-  weights.velocity_jump = 0.001;
-  weights.pressure_jump = 0;
-  weights.divergence = 0;
-  weights.nitsche_viscous = 40;
   return weights;
 }
 

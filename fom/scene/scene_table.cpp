@@ -356,7 +356,7 @@ std::vector<SceneKey> stabilisation_keys() {
   // Scales of 0 are derived where a problem is made.
   static constexpr StabilisationWeights derived = derived_weights(0, 0),
                                         published = published_weights(100, 2e-4),
-                                        quadratic = of_quadratic_velocities(derived);
+                                        quadratic = derived_weights(0, 0, 2);
   using Weight = double StabilisationWeights::*;
   const auto key = [](const char* path, const char* unit, const char* help, Weight weight,
                       AllowedRange allowed) {
@@ -364,8 +364,9 @@ std::vector<SceneKey> stabilisation_keys() {
                     RealKey{[weight](Scene& scene) -> double& { return scene.stabilisation.*weight; }, 1,
                             allowed, derived.*weight, published.*weight, std::nullopt}};
   };
-  const auto weight = [&](const char* path, const char* help, Weight member) {
-    SceneKey result = key(path, "", help, member, from_to(0, 1e6));
+  const auto weight = [&](const char* path, const char* help, Weight member,
+                          AllowedRange allowed = from_to(0, 1e6)) {
+    SceneKey result = key(path, "", help, member, allowed);
     std::get<RealKey>(result.value).quadratic = quadratic.*member;
     return result;
   };
@@ -373,9 +374,6 @@ std::vector<SceneKey> stabilisation_keys() {
   auto scale = choice<FIELD(stabilisation.velocity_scale)>(
       {name("reference", VelocityScale::reference), name("local", VelocityScale::local)}, {}, "local");
   scale.published = "reference";
-  SceneKey nitsche = key("stabilisation.nitsche_viscous", "", "Nitsche penalty, times viscosity / h",
-                         &Weights::nitsche_viscous, above_to(0, 1e6));
-  std::get<RealKey>(nitsche.value).quadratic = quadratic.nitsche_viscous;
   return {
       {"stabilisation.weights", "",
        "where the other keys of this section start from; `derived`: for Re 0 to 1000, with scales from the "
@@ -400,7 +398,8 @@ std::vector<SceneKey> stabilisation_keys() {
              &Weights::ghost_inertial),
       weight("stabilisation.ghost_pressure", "ghost penalty of cut parts, pressure",
              &Weights::ghost_pressure),
-      std::move(nitsche),
+      weight("stabilisation.nitsche_viscous", "Nitsche penalty, times viscosity / h",
+             &Weights::nitsche_viscous, above_to(0, 1e6)),
       weight("stabilisation.nitsche_normal", "Nitsche penalty on the normal component",
              &Weights::nitsche_normal),
       key("stabilisation.reference_velocity_cm_per_s", "cm_per_s",

@@ -146,7 +146,7 @@ TEST(FluidCylinder, CoarseVortexStreet) {
 }
 
 TEST(FluidCylinder, CoarseVortexStreetByQuadraticVelocities) {
-  const auto street = vortex_street(12, 0.006, 4.0, of_quadratic_velocities(derived_weights(1.0, 0.1)), 2);
+  const auto street = vortex_street(12, 0.006, 4.0, derived_weights(1.0, 0.1, 2), 2);
   ASSERT_GE(street.periods, 3);
   EXPECT_NEAR(street.strouhal, 0.301841, 0.02 * 0.301841);
 }

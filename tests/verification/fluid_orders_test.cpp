@@ -38,11 +38,6 @@ struct Orders {
 };
 constexpr Orders linear{1.8, 0.9, 1.0}, quadratic{2.8, 1.9, 1.9};
 
-StabilisationWeights weights_of(int velocity_order, double speed) {
-  const auto weights = derived_weights(speed, 1.0);
-  return velocity_order == 2 ? of_quadratic_velocities(weights) : weights;
-}
-
 void expect_orders(const char* name, ManufacturedFlow flow, const TurnedBox* box, int velocity_order = 1) {
   const auto& least = velocity_order == 2 ? quadratic : linear;
   for (const auto& regime : regimes) {
@@ -51,7 +46,7 @@ void expect_orders(const char* name, ManufacturedFlow flow, const TurnedBox* box
     flow.viscosity = convects ? 0.05 : 1.0;
     std::vector<double> velocity, gradient, pressure;
     for (const int n : velocity_order == 2 ? std::vector{8, 16, 32} : std::vector{8, 16, 32, 64}) {
-      auto weights = weights_of(velocity_order, convects ? 1.0 : 0.0);
+      auto weights = derived_weights(convects ? 1.0 : 0.0, 1.0, velocity_order);
       weights.velocity_scale = regime.scale;
       const auto solid = box ? std::optional(mesh_of(*box)) : std::nullopt;
       auto problem = manufactured_problem(flow, warped_square(n), solid, weights);

@@ -95,16 +95,11 @@ struct CarriedErrors {
   double smallest_ratio = 1;
 };
 
-StabilisationWeights weights_of(int velocity_order, double speed, double time) {
-  const auto weights = derived_weights(speed, time);
-  return velocity_order == 2 ? of_quadratic_velocities(weights) : weights;
-}
-
 CarriedErrors carried_errors(const CarriedFlow& flow, const TurnedBox& box, int n, TimeScheme scheme,
                              double end, int steps, int velocity_order = 1) {
   auto problem = manufactured_problem(flow.steady, warped_square(n),
                                       turned_box(box.centre, box.half_x, box.half_y, box.angle, 6, 5),
-                                      weights_of(velocity_order, 1.0, 0.1));
+                                      derived_weights(1.0, 0.1, velocity_order));
   problem.velocity_order = velocity_order;
   problem.body_force = [flow](const Point<2>& x, double t) { return flow.force(x, t); };
   const auto sides = tight_sides(flow, problem.background, velocity_order);
@@ -234,7 +229,7 @@ double stokes_layer_error(int per_layer, int steps, int velocity_order, double* 
   FsiProblem<2> problem;
   problem.fluid = {density, viscosity};
   problem.velocity_order = velocity_order;
-  problem.stabilisation = weights_of(velocity_order, swing * rate, 1 / rate);
+  problem.stabilisation = derived_weights(swing * rate, 1 / rate, velocity_order);
   const double h = delta / per_layer;
   problem.background = tensor_mesh(spaced(0, width, static_cast<int>(std::lround(width / h))),
                                    spaced(0, top, static_cast<int>(std::lround(top / h))));

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "geometry/cut/cut.hpp"
@@ -208,6 +209,19 @@ inline void expect_closed(const CutMesh<2>& cut, double tolerance) {
     ASSERT_LE(sums[p].normal.norm(), tolerance * h) << "part " << p << " is not closed";
     ASSERT_NEAR(sums[p].flux / 2, cut.parts[p].measure, tolerance * h * h) << "part " << p;
   }
+}
+
+/// Unknowns of the parts below and above the height y; `unknowns`: by part.
+template <class ByPart>
+std::array<std::set<int>, 2> sides_of(const CutMesh<2>& cut, const ByPart& unknowns, double y) {
+  std::array<std::set<int>, 2> sides;
+  for (std::size_t p = 0; p < cut.parts.size(); ++p) {
+    const auto& part = cut.parts[p];
+    const double at = part.cut ? cut.volume_quadrature.points[part.quadrature_begin][1]
+                               : cut.mesh.points[cut.mesh.cells[part.cell][1]][1];
+    sides[at < y ? 0 : 1].insert(unknowns[p].begin(), unknowns[p].end());
+  }
+  return sides;
 }
 
 /// Length of the skin of the solids inside the box [x0, x1] x [y0, y1].

@@ -65,13 +65,7 @@ TEST(DofSets, FoldedPlateThroughOneElementGivesThreeParts) {
 TEST(DofSets, PlateAcrossTheBoxSeparatesTheFluid) {
   const auto cut = cut_mesh<2>(box_mesh(0, 0, 1, 1, 4, 4), Solids{box_mesh(-0.5, 0.6, 1.5, 0.61, 7, 1)}, {});
   const auto dofs = build_dof_sets(cut);
-  std::set<int> below, above;
-  for (std::size_t p = 0; p < cut.parts.size(); ++p) {
-    const auto& part = cut.parts[p];
-    const double y = part.cut ? cut.volume_quadrature.points[part.quadrature_begin][1]
-                              : cut.mesh.points[cut.mesh.cells[part.cell][1]][1];
-    for (const int dof : dofs.part_dofs[p]) (y < 0.605 ? below : above).insert(dof);
-  }
+  const auto [below, above] = sides_of(cut, dofs.part_dofs, 0.605);
   for (const int dof : below) EXPECT_FALSE(above.contains(dof)) << "unknown " << dof << " leaks";
   EXPECT_EQ(below.size(), 20u); // rows 0 .. 3
   EXPECT_EQ(above.size(), 15u); // rows 2 .. 4

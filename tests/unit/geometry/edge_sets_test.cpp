@@ -24,13 +24,7 @@ TEST(EdgeSets, OfAnUncutMeshAreItsEdges) {
 TEST(EdgeSets, PlateAcrossTheBoxSeparatesTheFluid) {
   const auto cut = cut_mesh<2>(box_mesh(0, 0, 1, 1, 4, 4), Solids{box_mesh(-0.5, 0.6, 1.5, 0.61, 7, 1)}, {});
   const auto edges = build_edge_sets(cut);
-  std::set<int> below, above;
-  for (std::size_t p = 0; p < cut.parts.size(); ++p) {
-    const auto& part = cut.parts[p];
-    const double y = part.cut ? cut.volume_quadrature.points[part.quadrature_begin][1]
-                              : cut.mesh.points[cut.mesh.cells[part.cell][1]][1];
-    for (const int edge : edges.part_edges[p]) (y < 0.605 ? below : above).insert(edge);
-  }
+  const auto [below, above] = sides_of(cut, edges.part_edges, 0.605);
   for (const int edge : below) EXPECT_FALSE(above.contains(edge)) << "unknown " << edge << " leaks";
   // Rows of cells 0 .. 2 and 2 .. 3: with n rows 4 (n + 1) + 5 n + 4 n edges.
   EXPECT_EQ(below.size(), 43u);
