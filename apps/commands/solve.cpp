@@ -100,6 +100,26 @@ void warn_of_unsettled(const std::vector<ColumnStatistics>& statistics) {
       columns.size(), statistics.size(), names, columns.size() > most ? ", ..." : "");
 }
 
+/// Says where the velocity that convects was extrapolated too far: the answer can be wrong by any factor.
+void warn_of_extrapolation(const Scene& scene, const SolvedRun& run) {
+  constexpr double far = 0.05; // of the kinetic energy's root; at 0.25 a drag was ten times too high
+  if (scene.time.convection.tolerance > 0) {
+    return;
+  }
+  double error = run.periods.empty() ? 0.0 : run.periods.back().convection_error;
+  for (const ColumnStatistics& one : run.statistics) {
+    if (one.column == "convection_error") {
+      error = one.mean;
+    }
+  }
+  if (error > far) {
+    spdlog::warn(
+        "the velocity that convects is extrapolated, and off by {} % on average: the flow can be wrong; "
+        "time.convection_tolerance = 0.001, or shorter steps",
+        decimals(100 * error, 1));
+  }
+}
+
 std::vector<double> flows_of(const std::vector<PeriodSummary>& periods) {
   std::vector<double> flows;
   for (const PeriodSummary& period : periods) {
@@ -325,6 +345,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
       spdlog::warn("in the last period {}", film_remark(run.periods.back().film_unresolved_percent,
                                                         run.periods.back().film_elements_min));
     }
+    warn_of_extrapolation(scene, run);
     warn_of_unsettled(run.statistics);
     std::cout << (options.json ? json_text(run, timer) : table_text(run));
     if (options.plot) {

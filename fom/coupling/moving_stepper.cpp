@@ -71,32 +71,12 @@ void MovingStepper<dim>::solve_placed(const Eigen::VectorXd& placement, double t
   if (coupling_ == Coupling::mapped && stepper_ && stepper_->dt() == dt)
     stepper_->system().refresh();
   else
-    stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton);
-  if (!contact_) {
-    stepper_->advance_to(t, state);
-    return;
-  }
-  // Newton's method for the film, about ever better places of the skin.
-  constexpr int most = 12;
-  constexpr double accuracy = 0.02;
-  const State placed = state;
-  ContactBalance balance;
-  balance.linearised = placement;
-  for (int iteration = 1; iteration <= most; ++iteration) {
-    auto film = contact_force(*contact_, disc_, balance.linearised);
-    report_.contact_nodes = std::max(report_.contact_nodes, film.nodes);
-    report_.contact_iterations = std::max(report_.contact_iterations, iteration);
-    stepper_->set_contact(std::move(film));
-    state = placed;
-    stepper_->advance_to(t, state);
-    balance = contact_balance(*contact_, balance.linearised, state.d[0].tail(disc_.solid_unknowns()));
-    if (balance.error <= accuracy && balance.smallest_gap > 0) return;
-  }
-  throw NumericsError(
-      balance.smallest_gap > 0 ? "the film of contact did not find its balance" : "a solid would pass a wall",
-      "t = " + std::to_string(t) + " s, smallest gap " + std::to_string(balance.smallest_gap) +
-          " cm, relative error " + std::to_string(balance.error),
-      "a smaller time step, or a stiffer or thicker film (section [contact])");
+    stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton,
+                     settings_.convection, contact_.has_value());
+  if (contact_) stepper_->set_contact(&*contact_, placement);
+  stepper_->advance_to(t, state);
+  report_.contact_nodes = std::max(report_.contact_nodes, stepper_->contact_nodes());
+  report_.solves += stepper_->iterations();
 }
 
 template <int dim>
@@ -192,6 +172,10 @@ void MovingStepper<dim>::advance_part(double t, double dt, State& state) {
     error = (state.d[0].tail(solids) - placement).template lpNorm<Eigen::Infinity>();
     report_.iterations = std::max(report_.iterations, turn);
     if (settled(placement, state.d[0].tail(solids))) {
+      if (contact_)
+        report_.film_change =
+            std::max(report_.film_change,
+                     film_difference<dim>(*contact_, before.d[0].tail(solids), state.d[0].tail(solids)));
       report_.placement_error = std::max(report_.placement_error, error);
       return;
     }
@@ -213,12 +197,23 @@ void MovingStepper<dim>::advance(State& state) {
   // After parts, the step is tried in half as many.
   int parts = before.last_step > 0 ? static_cast<int>(std::lround(dt_ / before.last_step)) : 1;
   parts = std::max(1, parts / 2);
+  constexpr int most_for_films = 8;
+  const auto too_violent = [&] {
+    return settings_.motion.film_change > 0 && report_.film_change > settings_.motion.film_change &&
+           2 * parts <= most_for_films;
+  };
   while (true) {
     report_ = {};
     report_.parts = parts;
     try {
-      for (int part = 1; part <= parts; ++part)
+      for (int part = 1; part <= parts && !too_violent(); ++part)
         advance_part(part == parts ? end : before.time + dt_ * part / parts, dt_ / parts, state);
+      if (too_violent()) {
+        state = before;
+        restore(state);
+        parts *= 2;
+        continue;
+      }
       state.step = before.step + 1;
       return;
     } catch (const NumericsError& error) {

@@ -11,12 +11,10 @@ namespace undula::fom {
 namespace {
 
 /// What is seen at the end of a step; phase "observe".
-Observation seen_at(const PreparedScene& prepared, const TimeStepper<2>& stepper, const MotionReport& motion,
-                    const State& state, PhaseTimer& timer) {
+Observation seen_at(const PreparedScene& prepared, const TimeStepper<2>& stepper, const State& state,
+                    PhaseTimer& timer) {
   const auto scope = timer.measure("observe");
-  Observation seen = observe(prepared.disc, prepared.operators, stepper, prepared.observation, state);
-  seen.motion = motion;
-  return seen;
+  return observe(prepared.disc, prepared.operators, stepper, prepared.observation, state);
 }
 
 /// The domain of the fluid is that of rest.
@@ -26,11 +24,11 @@ public:
       : prepared_(prepared),
         timer_(timer),
         stepper_(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
-                 scene.time.factor_every, timer, scene.time.newton) {}
+                 scene.time.factor_every, timer, scene.time.newton, scene.time.convection) {}
 
   Observation advance(State& state) override {
     stepper_.advance(state);
-    return seen_at(prepared_, stepper_, {}, state, timer_);
+    return seen_at(prepared_, stepper_, state, timer_);
   }
 
 private:
@@ -50,7 +48,10 @@ public:
 
   Observation advance(State& state) override {
     stepper_.advance(state);
-    return seen_at(prepared_, stepper_.last_step(), stepper_.report(), state, timer_);
+    Observation seen = seen_at(prepared_, stepper_.last_step(), state, timer_);
+    seen.motion = stepper_.report();
+    seen.solves = seen.motion.solves;
+    return seen;
   }
 
 private:

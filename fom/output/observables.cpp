@@ -153,6 +153,8 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   const auto& x = state.x[0];
   seen.step = state.step;
   seen.time = state.time;
+  seen.solves = stepper.iterations();
+  seen.convection_error = stepper.convection_error();
   if (const auto outlet = operators.openings.find(outlet_name); outlet != operators.openings.end()) {
     seen.outflow = outlet->second.dot(x);
     const auto& pressure = disc.problem.boundary.at(outlet_name).pressure;

@@ -45,6 +45,8 @@ struct Observation {
   double tip_displacement = 0; ///< cm, axial, innermost probe
   HolderObservation holder;
   MotionReport motion;         ///< of couplings that move the domain
+  int solves = 0;              ///< linear solves of the step
+  double convection_error = 0; ///< TimeStepper::convection_error, of the last part of the step
   std::vector<double> general; ///< by GeneralObservables::columns, cgs
 };
 

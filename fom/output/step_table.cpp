@@ -70,6 +70,8 @@ constexpr Column columns[] = {
      In::voltage},
     {"electrical_power_mW",
      [](const Observation& o) { return units::power_to_mW(o.holder.electrical_power); }, In::voltage},
+    {"solves", [](const Observation& o) { return static_cast<double>(o.solves); }, In::elements},
+    {"convection_error", [](const Observation& o) { return o.convection_error; }, In::elements},
     {"contact_power_mW", [](const Observation& o) { return units::power_to_mW(o.energy.contact); },
      In::moving, true},
     {"step_parts", [](const Observation& o) { return static_cast<double>(o.motion.parts); }, In::moving},
@@ -192,6 +194,7 @@ std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_
     period.energy_gap = period.input_power_mW != 0 ? gap / period.input_power_mW : 0.0;
     if (value.has("scheme_power_mW") && period.input_power_mW != 0)
       period.scheme_loss = mean("scheme_power_mW") / period.input_power_mW;
+    if (value.has("convection_error")) period.convection_error = mean("convection_error");
     period.speed_max_cm_per_s = extremes("speed_max_cm_per_s").second;
     period.clearance_min_mm = extremes("clearance_min_mm").first;
     if (value.has("film_elements")) {

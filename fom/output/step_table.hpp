@@ -39,6 +39,9 @@ struct PeriodSummary {
   double energy_gap = 0;
   /// The part of it that the time scheme takes by itself (EnergyTerms::scheme); NaN without finite elements.
   double scheme_loss = std::numeric_limits<double>::quiet_NaN();
+  /// Mean distance of the extrapolated convecting velocity from the computed one; NaN without finite
+  /// elements.
+  double convection_error = std::numeric_limits<double>::quiet_NaN();
   double speed_max_cm_per_s = 0;
   double clearance_min_mm = 0;
   /// As in CurvePoint; NaN where solids do not move through the elements.

@@ -28,12 +28,21 @@ struct NewtonSettings {
   int max_iterations = 20;
 };
 
+/// The velocity that convects. It is extrapolated from the steps before, and taken anew from the answer of
+/// the step where that is off by more than `tolerance`.
+struct ConvectionSettings {
+  double tolerance =
+      0; ///< |convecting - computed| over |computed|, by kinetic energy; 0: extrapolated always
+};
+
 /// How the fluid's domain follows the solids (couplings other than `fixed`).
 struct MotionSettings {
   Extrapolation extrapolation = Extrapolation::second;
   double tolerance = 0;    ///< cm, implicit: largest difference between placed and computed displacement
   int max_iterations = 20; ///< implicit: turns of cut and solve in one step
   int max_halvings = 6;    ///< of the time step, where a step fails or solids would pass a wall
+  double film_change = 0;  ///< largest change of a gap in the film, relative to the smaller, before a step is
+                           ///< taken in parts, eight at most; 0: any
 };
 
 /// Contact of the displaced solids with walls: nodes of the skin closer than `film` are pushed off by
@@ -49,6 +58,7 @@ struct SteppingSettings {
   TimeScheme scheme = TimeScheme::bdf2;
   int factor_every = 1; ///< most steps that share one factorisation; the rest is left to GMRES
   NewtonSettings newton;
+  ConvectionSettings convection;
   MotionSettings motion;
 };
 

@@ -315,6 +315,11 @@ std::vector<SceneKey> numerics_keys() {
        shapes_state, RealKey{FIELD(time.newton.tolerance), 1, between(0, 1), NewtonSettings{}.tolerance}},
       {"time.newton_iterations", "", "nonlinear solids: iterations of Newton after which a step has failed",
        shapes_state, IntegerKey{FIELD(time.newton.max_iterations), 1, 1000, NewtonSettings{}.max_iterations}},
+      {"time.convection_tolerance", "",
+       "how far the velocity that convects, extrapolated from the steps before, may be from that of the "
+       "step's "
+       "answer, by kinetic energy, before it is taken from the answer; 0: it is extrapolated always",
+       shapes_state, RealKey{FIELD(time.convection.tolerance), 1, from_to(0, 1), 0.0, std::nullopt, 0.001}},
       {"time.extrapolation", "",
        "where a step expects the solids at its end, other couplings than `fixed`; `first`: d + dt v; "
        "`second`: "
@@ -333,6 +338,11 @@ std::vector<SceneKey> numerics_keys() {
        "couplings "
        "than `fixed`",
        shapes_state, IntegerKey{FIELD(time.motion.max_halvings), 0, 30, MotionSettings{}.max_halvings}},
+      {"time.film_change", "",
+       "largest change of a gap in the film of contact within a step, relative to the smaller one, before "
+       "the step "
+       "is taken in parts (eight at most); 0: any",
+       shapes_state, RealKey{FIELD(time.motion.film_change), 1, from_to(0, 1e3), 0.0}},
       {"contact.film_mm", "mm",
        "thickness of the film of fluid kept between solids and walls; 0: no law of contact", shapes_state,
        RealKey{FIELD(contact.film), cm_per_mm, from_to(0, 10), 0.0}},

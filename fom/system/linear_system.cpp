@@ -31,10 +31,6 @@ std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Opera
 /// than `worthwhile_corrections` have served their time.
 constexpr PetscInt most_corrections = 200, most_corrections_of_old = 25, worthwhile_corrections = 10;
 
-/// Of the preconditioned residual, where GMRES corrects old factors: with 1e-9 Newton's method came to a halt
-/// at 1.4e-8.
-constexpr double linear_tolerance = 1e-11;
-
 /// Of the right-hand side. Direct solves leave 1e-10, where cuts leave tiny parts up to 1e-5; an answer to
 /// another system is wrong by more than all of it.
 constexpr double largest_residual = 1e-2;
@@ -115,7 +111,7 @@ int LinearSystem<dim>::place_of(int row, int column) const {
 
 template <int dim>
 LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators,
-                                int factor_every, PhaseTimer& timer)
+                                int factor_every, PhaseTimer& timer, bool iterates)
     : disc_(disc), operators_(operators), timer_(timer), factor_every_(factor_every) {
   const auto scope = timer_.measure("assemble");
   const auto& index = operators.ownership.petsc_index;
@@ -173,7 +169,7 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(VecDuplicate(rhs_.get(), residual_.out()), "creating vectors");
   check_petsc(VecScatterCreateToAll(solution_.get(), gather_.out(), gathered_.out()), "creating the gather");
 
-  const bool corrects = factor_every > 1 || operators.has_nonlinear_solid;
+  const bool corrects = factor_every > 1 || operators.has_nonlinear_solid || iterates;
   check_petsc(KSPCreate(operators.comm, solver_.out()), "creating the solver");
   check_petsc(KSPSetOptionsPrefix(solver_.get(), "fsi_"), "naming the solver");
   check_petsc(KSPSetType(solver_.get(), corrects ? KSPGMRES : KSPPREONLY), "choosing the solver");
@@ -185,7 +181,7 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS), "choosing MUMPS");
   check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
   check_petsc(KSPSetFromOptions(solver_.get()), "reading -fsi_ options");
-  check_petsc(KSPGetTolerances(solver_.get(), nullptr, nullptr, nullptr, &most_iterations_),
+  check_petsc(KSPGetTolerances(solver_.get(), &stated_tolerance_, nullptr, nullptr, &most_iterations_),
               "asking the solver");
 }
 
@@ -211,10 +207,11 @@ void LinearSystem<dim>::sum_constant_terms(const SystemFactors& factors) {
 template <int dim>
 void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::VectorXd* b) {
   const auto scope = timer_.measure("assemble");
-  if (!factors_ || !(*factors_ == factors)) {
+  if (stale_ || !(factors_ == factors)) {
     sum_constant_terms(factors);
+    if (!(factors_ == factors)) factored_at_ = -1;
     factors_ = factors;
-    factored_at_ = -1;
+    stale_ = false;
     if (holder_place_ >= 0) holder_entries_[holder_place_] = factors.holder;
   }
   without_tangents_ = constant_;
@@ -227,7 +224,7 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
     visit_flow_dependent(disc_, operators_, *b,
                          [&](int, int, double value) { without_tangents_[*place++] += value; });
   }
-  write(without_tangents_);
+  if (!operators_.has_nonlinear_solid) write(without_tangents_);
 }
 
 template <int dim>
@@ -252,6 +249,12 @@ bool LinearSystem<dim>::has_places_for(const SparseMatrix& matrix) const {
 
 template <int dim>
 void LinearSystem<dim>::refresh() {
+  renew_constants();
+  factored_at_ = -1;
+}
+
+template <int dim>
+void LinearSystem<dim>::renew_constants() {
   int fits = 1;
   for (const auto& [matrix, factor] : constant_terms(operators_, {})) fits = fits && has_places_for(*matrix);
   fits = fits && (!added_stiffness_ || has_places_for(*added_stiffness_));
@@ -261,18 +264,19 @@ void LinearSystem<dim>::refresh() {
   if (!fits)
     throw NumericsError("new operators have entries that the system matrix was not made for",
                         "a refresh of the linear system", "a new linear system for every new cut");
-  factors_.reset();
+  stale_ = true;
 }
 
 template <int dim>
 void LinearSystem<dim>::add_stiffness(const SparseMatrix* added) {
   added_stiffness_ = added;
-  refresh();
+  renew_constants();
 }
 
 template <int dim>
 void LinearSystem<dim>::replace_tangents(
     const std::vector<typename CellResponse<dim>::Derivatives>& tangents) {
+  if (!operators_.has_nonlinear_solid) return;
   const auto scope = timer_.measure("assemble");
   std::vector<double> values = without_tangents_;
   auto place = tangent_places_.begin();
@@ -313,7 +317,7 @@ void LinearSystem<dim>::check_residual(int step) {
 
 template <int dim>
 Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, int iteration,
-                                         const Eigen::VectorXd* guess) {
+                                         const Eigen::VectorXd* guess, double tolerance) {
   const auto& index = operators_.ownership.petsc_index;
   fill(rhs_.get(), rhs);
   bool reuse = false;
@@ -330,7 +334,8 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
     check_petsc(
-        KSPSetTolerances(solver_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+        KSPSetTolerances(solver_.get(), stated_tolerance_ != linear_tolerance ? stated_tolerance_ : tolerance,
+                         PETSC_DEFAULT, PETSC_DEFAULT,
                          std::min(most_iterations_, reuse ? most_corrections_of_old : most_corrections)),
         "setting tolerances");
   }

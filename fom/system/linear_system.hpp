@@ -28,12 +28,13 @@ template <int dim>
 class LinearSystem {
 public:
   /// Collective. `factor_every` > 1 keeps a numerical factorisation for at most that many steps and corrects
-  /// by GMRES. So do Newton's iterations of one step.
+  /// by GMRES. So do the iterations of one step, where it takes several: with nonlinear solids, or
+  /// `iterates`.
   LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators, int factor_every,
-               PhaseTimer& timer);
+               PhaseTimer& timer, bool iterates = false);
 
-  /// Sets the values for convecting field `b` (null: no convection). Tangents of nonlinear solids are zero.
-  /// Phase "assemble". Collective.
+  /// Sets the values for convecting field `b` (null: no convection). Nonlinear solids need `replace_tangents`
+  /// before the next solution. Phase "assemble". Collective.
   void assemble(const SystemFactors& factors, const Eigen::VectorXd* b);
 
   /// To be called when the operators' values have changed in place, as after a new map of the domain: the
@@ -42,7 +43,8 @@ public:
   void refresh();
 
   /// Adds a stiffness to that of the operators (this rank's share; null: none, as at first) until another one
-  /// takes its place. It has to outlive its use. Collective; throws as `refresh`.
+  /// takes its place, from the next `assemble` on; factors are kept. It has to outlive its use. Collective;
+  /// throws as `refresh`.
   void add_stiffness(const SparseMatrix* added);
 
   /// Replaces the tangents of the share's nonlinear cells and nothing else. Phase "assemble". Collective.
@@ -55,8 +57,12 @@ public:
   /// restart from a state at such a multiple repeats the run; in between, a step after one in which GMRES did
   /// not get on with the old factors. From Newton's second `iteration` of a step on the factors stay as long
   /// as it does, from `guess` if one is given.
+  /// Where GMRES corrects old factors it goes on to `tolerance`, of the preconditioned right-hand side.
   Eigen::VectorXd solve(const Eigen::VectorXd& rhs, int step, int iteration = 1,
-                        const Eigen::VectorXd* guess = nullptr);
+                        const Eigen::VectorXd* guess = nullptr, double tolerance = linear_tolerance);
+
+  /// The tolerance of answers that nothing corrects afterwards.
+  static constexpr double linear_tolerance = 1e-11;
 
   Mat matrix() const { return matrix_.get(); }
 
@@ -65,6 +71,7 @@ private:
   int place_of(int row, int column) const;
   bool has_places_for(const SparseMatrix& matrix) const;
   void add_constant(const SparseMatrix& matrix, double factor);
+  void renew_constants();
   void sum_constant_terms(const SystemFactors& factors);
   void fill(Vec vector, const Eigen::VectorXd& values); ///< with this rank's share of them
   void write(std::vector<double>& values);              ///< with what the constrained rows say
@@ -76,6 +83,7 @@ private:
   int factor_every_;
   int factored_at_ = -1;
   PetscInt most_iterations_ = 0;                  ///< that -fsi_ options allow
+  double stated_tolerance_ = linear_tolerance;    ///< the same
   bool worn_ = false;                             ///< GMRES has needed as long as new factors take
   std::vector<int> row_begin_, columns_;          ///< pattern of this rank's share, natural numbering
   std::vector<int> flow_places_, tangent_places_; ///< of visited entries in the pattern, in their order
@@ -85,7 +93,8 @@ private:
   std::vector<double> holder_entries_;            ///< that follow those of the pattern, of a driven holder
   int holder_place_ = -1; ///< of SystemFactors::holder in them, on the rank that has it
   const SparseMatrix* added_stiffness_ = nullptr;
-  std::optional<SystemFactors> factors_;
+  std::optional<SystemFactors> factors_; ///< of `constant_`
+  bool stale_ = false;                   ///< whether the operators have changed since
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_, residual_;
   PetscScatter gather_;

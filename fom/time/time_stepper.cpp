@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -41,21 +42,69 @@ std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step, double ratio
 template <int dim>
 TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators,
                               TimeScheme scheme, double dt, int factor_every, PhaseTimer& timer,
-                              const NewtonSettings& newton)
+                              const NewtonSettings& newton, const ConvectionSettings& convection,
+                              bool contact)
     : disc_(disc),
       operators_(operators),
       scheme_(scheme),
       dt_(dt),
       timer_(timer),
       newton_(newton),
-      system_(disc, operators, factor_every, timer) {}
+      convection_(convection),
+      system_(disc, operators, factor_every, timer, convection.tolerance > 0 || contact) {}
 
 template <int dim>
-void TimeStepper<dim>::set_contact(ContactForce contact) {
-  contact_ = std::move(contact);
+void TimeStepper<dim>::set_contact(const WallContact<dim>* contact, const Eigen::VectorXd& placement) {
+  contact_with_ = contact;
+  contact_.reset();
+  if (contact)
+    linearise_contact(placement);
+  else
+    system_.add_stiffness(nullptr);
+}
+
+template <int dim>
+void TimeStepper<dim>::linearise_contact(const Eigen::VectorXd& placement) {
+  contact_ = contact_force(*contact_with_, disc_, placement);
+  contact_about_ = placement;
+  contact_stiffness_ = contact_->stiffness;
   // The film is known to every rank and enters once.
   if (operators_.rank != 0) contact_->stiffness.setZero();
   system_.add_stiffness(&contact_->stiffness);
+}
+
+template <int dim>
+double TimeStepper<dim>::distance_by_energy(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
+  const int fluid = disc_.fluid_unknowns(), solid = disc_.unknowns() - fluid;
+  Eigen::VectorXd flow = x, difference = x - y;
+  flow.tail(solid).setZero();
+  difference.tail(solid).setZero();
+  Eigen::VectorXd sums(2);
+  sums << difference.dot(operators_.mass * difference), flow.dot(operators_.mass * flow);
+  sum_over_ranks(operators_.comm, sums);
+  return sums[0] > 0 ? std::sqrt(sums[0] / std::max(sums[1], std::numeric_limits<double>::min())) : 0.0;
+}
+
+template <int dim>
+std::string TimeStepper<dim>::missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d) {
+  std::string what;
+  if (contact_with_) {
+    constexpr double accuracy = 0.02; // of the film's force
+    auto balance = contact_balance(*contact_with_, contact_about_, d);
+    contact_nodes_ = std::max(contact_nodes_, contact_->nodes);
+    contact_next_ = std::move(balance.linearised);
+    if (balance.smallest_gap <= 0)
+      what = "a solid would pass a wall, by " + std::to_string(-balance.smallest_gap) + " cm";
+    else if (balance.error > accuracy)
+      what = "the film of contact is out of balance by " + std::to_string(balance.error) +
+             " of its force; a stiffer or thicker film (section [contact]) helps";
+  }
+  if (disc_.problem.flow != FlowModel::navier_stokes) return what;
+  const double error = distance_by_energy(x, convecting_);
+  if (iterations_ == 1) convection_error_ = error;
+  if (what.empty() && convection_.tolerance > 0 && error > convection_.tolerance)
+    what = "the convecting velocity is off by " + std::to_string(error) + " (time.convection_tolerance)";
+  return what;
 }
 
 template <int dim>
@@ -122,28 +171,46 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
     const auto scope = timer_.measure("assemble");
     rhs = operators_.stiffness * (history_d / alpha[0]) -
           operators_.mass * ((alpha[1] * state.x[0] + alpha[2] * state.x[1]) / dt_);
-    if (contact_) rhs += contact_->stiffness * (history_d / alpha[0]);
     sum_over_ranks(operators_.comm, rhs);
-    rhs += loads(t);
+    rhs += loads_at(disc_, operators_, t);
     constrain_rows(disc_, rhs);
     impose(state, alpha, t, rhs);
     convecting_ = scheme_ == TimeScheme::bdf2 && step > 1
                       ? Eigen::VectorXd((1 + ratio) * state.x[0] - ratio * state.x[1])
                       : state.x[0];
   }
-  iterations_ = 0;
+  iterations_ = contact_nodes_ = 0;
+  const int fluid = disc_.fluid_unknowns(), solid = disc_.unknowns() - fluid;
+  const auto displaced = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return (dt_ * x.tail(solid) - history_d.tail(solid)) / alpha[0];
+  };
+  const Eigen::VectorXd expected = convecting_;
   const auto solve = [&](SystemFactors factors, const Eigen::VectorXd& right) {
     factors.mass = alpha[0] / dt_;
     factors.stiffness = dt_ / alpha[0];
-    system_.assemble(factors, &convecting_);
-    if (!operators_.has_nonlinear_solid) {
+    Eigen::VectorXd side;
+    const auto assemble = [&] {
+      system_.assemble(factors, &convecting_);
+      side = right;
+      if (!contact_) return;
+      Eigen::VectorXd film = contact_->load + contact_stiffness_ * (history_d / alpha[0]);
+      constrain_rows(disc_, film);
+      side += film;
+    };
+    OtherTerms others;
+    others.renew = [&](const Eigen::VectorXd& x) {
+      if (contact_with_) linearise_contact(contact_next_);
+      if (convection_.tolerance > 0) convecting_ = x;
+      if (contact_with_ || convection_.tolerance > 0) assemble();
+    };
+    others.missed = [&](const Eigen::VectorXd& x) {
       ++iterations_;
-      return system_.solve(right, step);
-    }
-    Eigen::VectorXd x = convecting_;
-    iterations_ += solve_newton<dim>(system_, disc_, operators_,
-                                     {{dt_ / alpha[0], 1.0}, -history_d / alpha[0], state.d[0]}, right,
-                                     newton_, step, true, x);
+      return missed(x, displaced(x));
+    };
+    assemble();
+    Eigen::VectorXd x = expected;
+    solve_newton<dim>(system_, disc_, operators_, {{dt_ / alpha[0], 1.0}, -history_d / alpha[0], state.d[0]},
+                      side, newton_, step, true, x, others);
     return x;
   };
   Eigen::VectorXd x;
@@ -159,8 +226,7 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
   state.x[1] = std::move(state.x[0]);
   state.d[1] = std::move(state.d[0]);
   state.d[0] = Eigen::VectorXd::Zero(disc_.unknowns());
-  const int fluid = disc_.fluid_unknowns(), solid = disc_.unknowns() - fluid;
-  state.d[0].tail(solid) = (dt_ * x.tail(solid) - history_d.tail(solid)) / alpha[0];
+  state.d[0].tail(solid) = displaced(x);
   state.x[0] = std::move(x);
   state.step = step;
   state.time = t;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 #include "fom/contact/wall_contact.hpp"
 #include "fom/system/newton.hpp"
@@ -26,19 +27,22 @@ Point<dim> imposed_displacement(const Discretisation<dim>& disc, const ImposedNo
 template <int dim>
 class TimeStepper {
 public:
+  /// `contact`: whether set_contact will be called.
   TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators, TimeScheme scheme, double dt,
-              int factor_every, PhaseTimer& timer, const NewtonSettings& newton = {});
+              int factor_every, PhaseTimer& timer, const NewtonSettings& newton = {},
+              const ConvectionSettings& convection = {}, bool contact = false);
 
-  /// One step; with nonlinear solids by Newton's method from the extrapolated velocities. Collective; throws
-  /// NumericsError on every rank, leaving `state` at the last good step.
+  /// One step. Nonlinear solids, a film of contact and a convecting velocity that is off are found in the
+  /// same iterations, from the extrapolated velocities. Collective; throws NumericsError on every rank,
+  /// leaving `state` at the last good step.
   void advance(State& state);
 
   /// The same to time t, which has to be one dt later; for steps that are parts of a regular one.
   void advance_to(double t, State& state);
 
-  /// The force of contact in the following steps, the same on every rank, in the place of an earlier one. The
-  /// operators stay as they are. Collective.
-  void set_contact(ContactForce contact);
+  /// Contact in the following steps, first linearised about `placement` (solids' unknowns); null: none. It
+  /// has to outlive its use. The operators stay as they are. Collective.
+  void set_contact(const WallContact<dim>* contact, const Eigen::VectorXd& placement);
 
   /// What is left over of every equation of that step: zero but in the rows of imposed unknowns, where it is
   /// the generalised force that imposes them. Natural order, complete on every rank. Collective.
@@ -49,8 +53,12 @@ public:
 
   double dt() const { return dt_; }
 
-  /// Linear solves of the last step: Newton's iterations with nonlinear solids, else 1.
+  /// Linear solves of the last step.
   int iterations() const { return iterations_; }
+  /// Nodes of the skin in the film of contact, the most of the last step's iterations.
+  int contact_nodes() const { return contact_nodes_; }
+  /// Distance of the extrapolated velocity from that of the last step, as ConvectionSettings::tolerance.
+  double convection_error() const { return convection_error_; }
   LinearSystem<dim>& system() { return system_; }
 
 private:
@@ -66,14 +74,25 @@ private:
   double dt_;
   PhaseTimer& timer_;
   NewtonSettings newton_;
-  int iterations_ = 0;
-  LinearSystem<dim> system_;
   Eigen::VectorXd loads(double t) const;
+  void linearise_contact(const Eigen::VectorXd& placement);
+  /// What of convection and contact does not hold for the answer `x`, which displaces the solids to `d`.
+  std::string missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d);
+  double distance_by_energy(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
 
+  ConvectionSettings convection_;
+  int iterations_ = 0, contact_nodes_ = 0;
+  double convection_error_ = 0;
+  LinearSystem<dim> system_;
+
+  const WallContact<dim>* contact_with_ = nullptr;
   std::optional<ContactForce> contact_; ///< its stiffness is part of the system's
+  SparseMatrix contact_stiffness_;      ///< its stiffness on every rank
+  Eigen::VectorXd contact_about_;       ///< where it is linearised, solids' unknowns
+  Eigen::VectorXd contact_next_;        ///< where it is linearised next
   std::array<double, 3> alpha_{};       ///< of the last step
   Eigen::VectorXd older_x_, older_d_;   ///< levels n-1 of the last step, for the energy terms
-  Eigen::VectorXd convecting_;          ///< extrapolated velocity of the last step
+  Eigen::VectorXd convecting_;          ///< velocity that convects in the last step
 };
 
 } // namespace undula::fom

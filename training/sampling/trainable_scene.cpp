@@ -31,6 +31,9 @@ void require_trainable(const Scene& scene) {
          "quadratic velocities have no stabilisation of the pressure that could be projected",
          "space.order = 2 with pressure_stability = \"projected-stabilisation\"",
          "pressure_stability = \"supremizers\", or order = 1", "training");
+  refuse(scene.time.convection.tolerance > 0,
+         "a reduced model extrapolates the velocity that convects from the steps before",
+         "time.convection_tolerance > 0", "convection_tolerance = 0", "time");
   refuse(scene.stabilisation.velocity_scale != VelocityScale::reference,
          "a reduced model is projected from penalties that do not depend on the flow",
          "stabilisation.velocity_scale = \"local\"", "weights = \"published\"", "stabilisation");

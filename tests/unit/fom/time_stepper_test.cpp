@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fom/time/step_parts.hpp"
 #include "tests/verification/support/channel_problem.hpp"
 
 namespace undula::fom {
@@ -156,6 +157,32 @@ TEST(TimeStepper, FactorsThatNoLongerFitAreMadeAnew) {
   const int fluid = run.disc.fluid_unknowns();
   EXPECT_GT(every.x[0].head(fluid).lpNorm<Eigen::Infinity>(), 50.0);
   EXPECT_LT((every.x[0] - never.x[0]).head(fluid).norm(), 1e-6 * every.x[0].head(fluid).norm());
+}
+
+/// A wall that drags the fluid along: what a step leaves over with its own velocity as the convecting one.
+TEST(TimeStepper, TakesTheConvectingVelocityFromItsAnswerWhereAsked) {
+  for (const int order : {1, 2}) {
+    SCOPED_TRACE("order " + std::to_string(order));
+    Channel run(PETSC_COMM_SELF, order, 1e7);
+    const auto left_over = [&](double tolerance) {
+      TimeStepper<2> stepper(run.disc, run.operators, TimeScheme::bdf1, dt, 1, run.timer, {}, {tolerance});
+      State state = initial_state(run.disc);
+      for (int k = 0; k < 3; ++k) stepper.advance(state);
+      EXPECT_GT(stepper.convection_error(), 0.1);
+      EXPECT_EQ(stepper.iterations() > 1, tolerance > 0);
+      const auto& x = state.x[0];
+      const Eigen::VectorXd convection = convection_of(run.disc, run.operators, x, x);
+      Eigen::VectorXd sum = run.operators.mass * ((x - state.x[1]) / dt) + run.operators.physical * x +
+                            run.operators.stabilisation * x + run.operators.damping * x +
+                            run.operators.stiffness * state.d[0] + convection +
+                            jumps_of(run.disc, run.operators, x, x) -
+                            loads_at(run.disc, run.operators, state.time);
+      constrain_rows(run.disc, sum);
+      return sum.norm() / convection.norm();
+    };
+    EXPECT_GT(left_over(0), 0.05);
+    EXPECT_LT(left_over(1e-4), 1e-3);
+  }
 }
 
 class TimeStepperMpi : public testing::TestWithParam<int> {};
