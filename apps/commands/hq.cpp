@@ -58,15 +58,21 @@ struct HqCommandOptions {
   std::vector<std::string> petsc;
 };
 
-/// The level beside the curve: at the frequency and stroke that its holder makes. Beside one that a voltage
-/// drives, a scene keeps its own drive; one that a stroke drives takes the nominal stroke of the curve's
-/// data.
-LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, const MeasuredCurve* data) {
+/// The level beside the curve: at the frequency and stroke that its holder makes. Beside a scene that a
+/// voltage drives, a scene keeps its own drive; one that a stroke drives takes the nominal stroke of the
+/// curve's data. An emulator, and a scene beside one, take the voltage of the curve.
+LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, bool of_emulator,
+                        const MeasuredCurve* data) {
   const auto& point = scene.operating_point;
   if (point.drive == Drive::voltage) {
     if (!is_scene(options.beside)) {
-      throw InputError("a reduced model of this version is driven by a stroke", options.beside,
-                       "--beside with a scene (.toml), where a voltage drives the curve", "--beside");
+      return read_level_source(options.beside, {}, point.frequency, {}, point.voltage);
+    }
+    if (of_emulator) {
+      const auto own = read_level_source(options.beside, {}, point.frequency, {});
+      if (own.scene.operating_point.drive == Drive::voltage) {
+        return read_level_source(options.beside, {}, point.frequency, {}, point.voltage);
+      }
     }
     auto beside = read_level_source(options.beside, {}, point.frequency, {});
     if (beside.scene.operating_point.drive == Drive::stroke && data != nullptr && data->stroke_mm) {
@@ -74,8 +80,9 @@ LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, con
     }
     return beside;
   }
-  const double stroke =
-      units::length_to_mm(point.stroke) * (is_scene(options.beside) ? 1 : point.stroke_scale);
+  // A projected model knows no scale of the stroke.
+  const bool projected = !is_scene(options.beside) && !rom::holds_emulator(options.beside);
+  const double stroke = units::length_to_mm(point.stroke) * (projected ? point.stroke_scale : 1);
   return read_level_source(options.beside, {}, point.frequency, stroke);
 }
 
@@ -130,7 +137,7 @@ struct Question {
 /// where it was driven otherwise.
 std::vector<const MeasuredCurve*> data_of_curves(const HqCommandOptions& options, const Question& question) {
   const bool alone = question.scenes.size() == 1 && question.measured.size() <= 1;
-  const std::string asked = question.source.model ? "the model" : "the scene";
+  const std::string asked = question.source.is_model() ? "the model" : "the scene";
   std::vector<const MeasuredCurve*> data(question.scenes.size(), nullptr);
   for (std::size_t m = 0; m < question.measured.size(); ++m) {
     const MeasuredCurve& curve = question.measured[m];
@@ -167,10 +174,14 @@ Question read_question(const HqCommandOptions& options) {
                         voltages.empty() ? std::nullopt : std::optional(voltages.front()));
   question.scenes = {question.source.scene};
   for (std::size_t k = 1; k < voltages.size(); ++k) {
-    question.scenes.push_back(with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
+    // A model's scene is no whole one: it is made again instead of changed.
+    question.scenes.push_back(
+        question.source.is_model()
+            ? read_level_source(options.file, {}, options.frequency_Hz, options.stroke_mm, voltages[k]).scene
+            : with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
   }
   const Scene& scene = question.scenes.front();
-  if (options.band && question.source.model) {
+  if (options.band && question.source.is_model()) {
     throw InputError("a reduced model states no tolerances of its inputs", "--band",
                      "--band with a scene (.toml); a reduced model prints its own error", options.file);
   }
@@ -208,7 +219,8 @@ Question read_question(const HqCommandOptions& options) {
   }
   if (!options.beside.empty()) {
     for (std::size_t k = 0; k < question.scenes.size(); ++k) {
-      question.other.push_back(read_beside(options, question.scenes[k], question.beside_curve[k]));
+      question.other.push_back(read_beside(options, question.scenes[k], question.source.emulator.has_value(),
+                                           question.beside_curve[k]));
     }
   }
   return question;
@@ -264,8 +276,9 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
       }
       points += curves[k].size();
       reports.push_back(
-          {question.scenes[k], level->name(), question.source.model ? options.file : "", level->unknowns(),
-           curves[k], timer, elapsed.count(), question.beside_curve[k], bands.empty() ? nullptr : &bands[k],
+          {question.scenes[k], level->name(), question.source.is_model() ? options.file : "",
+           level->unknowns(), curves[k], timer, elapsed.count(), question.beside_curve[k],
+           bands.empty() ? nullptr : &bands[k],
            other_level ? name_beside(*other_level, *level, question.other[k], question.scenes[k]) : "",
            other_level ? std::span<const CurvePoint>(beside[k]) : std::span<const CurvePoint>(),
            question.recorded});

@@ -1,9 +1,11 @@
-// undula train scene.toml: full-order runs over the box of the scene, and the reduced model made from them.
+// undula train scene.toml: full-order runs over the box of the scene, and the reduced model or emulator made
+// from them.
 //   undula train data/scenes/wave_pump_fixed.toml --output model.h5
 //   mpirun -np 2 undula train data/scenes/wave_pump_fixed.toml --output model.h5 --campaign runs
 //   undula train data/scenes/wave_pump_fixed.toml --campaign runs --output model.h5 --json
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include "apps/apps.hpp"
 #include "apps/commands/commands.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/emulator_report.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
 #include "apps/stop_signal.hpp"
@@ -25,6 +28,8 @@
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
+#include "training/emulation/build_emulator.hpp"
+#include "training/emulation/next_points.hpp"
 #include "training/reduction/build_model.hpp"
 #include "training/sampling/trainable_scene.hpp"
 
@@ -36,14 +41,19 @@ struct TrainOptions {
   std::vector<std::string> overrides;
   std::string output;
   std::string campaign;
+  std::optional<double> tolerance; ///< l/min
+  int most_runs = 100;
   bool force = false;
   bool json = false;
   std::vector<std::string> petsc;
 };
 
 std::string point_text(const OperatingPoint& point) {
-  return plain_number(point.frequency) + " Hz, " + plain_number(units::length_to_mm(point.stroke)) + " mm, " +
-         plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
+  const std::string drive = point.drive == Drive::voltage
+                                ? plain_number(point.voltage) + " V, "
+                                : plain_number(units::length_to_mm(point.stroke)) + " mm, ";
+  return plain_number(point.frequency) + " Hz, " + drive + plain_number(units::pressure_to_mmHg(point.head)) +
+         " mmHg";
 }
 
 std::string mode_text(const TrainedModel& trained) {
@@ -119,10 +129,11 @@ void check_target(const std::string& file, const Scene& scene, bool force) {
   }
   std::string seen = "a file that is no reduced model";
   try {
-    const rom::Model there = rom::load_model(file);
+    const auto provenance =
+        rom::holds_emulator(file) ? rom::load_emulator(file).provenance : rom::load_model(file).provenance;
     const auto entry = [&](const char* name) {
-      const auto found = there.provenance.find(name);
-      return found == there.provenance.end() ? std::string() : found->second;
+      const auto found = provenance.find(name);
+      return found == provenance.end() ? std::string() : found->second;
     };
     const auto differences = differing_keys(entry("scene"), scene_to_toml(scene));
     if (force || (differences.empty() && entry("scene_hash") == scene_hash(scene))) {
@@ -153,10 +164,10 @@ void compute_runs(const Scene& scene, std::span<const OperatingPoint> points, co
       if (progress) {
         progress->update(static_cast<long>(done));
       }
-      const std::string outcome =
-          run.state == RunState::periodic
-              ? "periodic after " + std::to_string(run.cycles.periods.size()) + " periods"
-              : run.reason;
+      const std::string periods = std::to_string(run.cycles.periods.size()) + " periods";
+      const std::string outcome = run.state == RunState::periodic  ? "periodic after " + periods
+                                  : run.state == RunState::settled ? "mean known after " + periods
+                                                                   : run.reason;
       spdlog::info("{}/{}  {}: {} ({} s)", done, total, point_text(run.point), outcome,
                    decimals(run.seconds.at("total"), 1));
     };
@@ -180,6 +191,66 @@ void compute_runs(const Scene& scene, std::span<const OperatingPoint> points, co
   }
 }
 
+/// Points as numbers, for the other ranks.
+std::vector<OperatingPoint> shared(const std::vector<OperatingPoint>& on_root, const Scene& scene,
+                                   MPI_Comm comm) {
+  std::vector<double> numbers;
+  for (const OperatingPoint& at : on_root) {
+    numbers.insert(numbers.end(), {at.frequency, at.stroke, at.voltage, at.head});
+  }
+  int size = static_cast<int>(numbers.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+  numbers.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(numbers.data(), size, MPI_DOUBLE, 0, comm);
+  std::vector<OperatingPoint> points;
+  for (std::size_t k = 0; k < numbers.size(); k += 4) {
+    OperatingPoint at = scene.operating_point;
+    at.frequency = numbers[k], at.stroke = numbers[k + 1], at.voltage = numbers[k + 2],
+    at.head = numbers[k + 3];
+    points.push_back(at);
+  }
+  return points;
+}
+
+/// Adds runs to `plan` and `points` where the emulator's stated error is largest, until it is within the
+/// tolerance over the box or the runs are as many as allowed.
+void add_runs(const TrainOptions& options, const Scene& scene, const CampaignStore& store,
+              const std::string& folder, MPI_Comm comm, SamplingPlan& plan,
+              std::vector<OperatingPoint>& points) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  const int groups = std::max(1, ranks / scene.training.ranks_per_run);
+  while (true) {
+    std::vector<OperatingPoint> wanted;
+    on_root(comm, [&] {
+      if (!store.status(points).pending.empty()) {
+        return;
+      }
+      const auto next = next_points(build_emulator(scene, plan, store).emulator, scene, points, groups);
+      const int left = options.most_runs - static_cast<int>(points.size());
+      spdlog::info("{} runs: largest stated error of the box {} l/min", points.size(),
+                   decimals(next.largest_error, 4));
+      if (next.largest_error <= *options.tolerance) {
+        return;
+      }
+      if (left <= 0) {
+        spdlog::warn("the error asked for, {} l/min, is not reached with {} runs: more --runs",
+                     plain_number(*options.tolerance), points.size());
+        return;
+      }
+      wanted = next.points;
+      wanted.resize(std::min(wanted.size(), static_cast<std::size_t>(left)));
+    });
+    wanted = shared(wanted, scene, comm);
+    if (wanted.empty()) {
+      return;
+    }
+    plan.training.insert(plan.training.end(), wanted.begin(), wanted.end());
+    points.insert(points.end(), wanted.begin(), wanted.end());
+    compute_runs(scene, points, store, folder, comm);
+  }
+}
+
 void train(const TrainOptions& options, MPI_Comm comm) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
@@ -195,7 +266,12 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     remove_leftovers_of(output);
   });
   const std::string folder = options.campaign.empty() ? output + ".runs" : options.campaign;
-  const SamplingPlan plan = plan_samples(scene.training);
+  const bool emulated = scene.training.model == ModelKind::emulator;
+  if (options.tolerance && !emulated) {
+    throw InputError("a projected model does not choose its runs", "--tolerance",
+                     "training.model = \"emulator\"", scene.file.string());
+  }
+  SamplingPlan plan = plan_samples(scene.training, emulated ? scene.operating_point : OperatingPoint{});
   std::vector<OperatingPoint> points = plan.training;
   points.insert(points.end(), plan.held_out.begin(), plan.held_out.end());
   std::optional<CampaignStore> store;
@@ -211,6 +287,9 @@ void train(const TrainOptions& options, MPI_Comm comm) {
 
   // 2. The full-order runs that are not there yet.
   compute_runs(scene, points, *store, folder, comm);
+  if (options.tolerance) {
+    add_runs(options, scene, *store, folder, comm, plan, points);
+  }
 
   // 3. The reduced model, by one rank, unless another process still computes.
   on_root(comm, [&] {
@@ -218,6 +297,18 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     if (!pending.empty()) {
       spdlog::warn("{} points are being computed by other processes: call again when they have ended",
                    pending.size());
+      return;
+    }
+    if (emulated) {
+      BuiltEmulator built = build_emulator(scene, plan, *store);
+      built.emulator.provenance = provenance(ranks);
+      built.emulator.provenance["scene"] = scene_to_toml(scene);
+      built.emulator.provenance["scene_hash"] = scene_hash(scene);
+      rom::save_emulator(built.emulator, output);
+      for (const std::string& message : built.not_used) {
+        spdlog::warn("not used: {}", message);
+      }
+      std::cout << (options.json ? emulator_json(built, output) : emulator_text(built, output));
       return;
     }
     PhaseTimer timer;
@@ -253,6 +344,14 @@ void add_train_command(CLI::App& app) {
   command->add_option("--output", options->output, "model file to write; default NAME.h5");
   command->add_option("--campaign", options->campaign,
                       "folder of the full-order runs, resumed if it exists; default OUTPUT.runs");
+  command
+      ->add_option(
+          "--tolerance", options->tolerance,
+          "emulators: add runs where the stated error of the flow is largest, until it is below this, l/min")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--runs", options->most_runs, "most runs that --tolerance may come to; default 100")
+      ->check(CLI::Range(1, 100000))
+      ->needs("--tolerance");
   command->add_flag("--force", options->force, "replace a model of another scene in OUTPUT");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("petsc", options->petsc, "options for PETSc, after --");

@@ -116,7 +116,7 @@ void run(const ValidateOptions& options, MPI_Comm comm) {
   const LevelSource source = read_level_source(options.file, options.overrides, options.frequency_Hz,
                                                options.stroke_mm, options.voltage_V);
   const Scene& scene = source.scene;
-  warn_of_other_point(comparison.curve, options.data, source.model ? "the model" : "the scene",
+  warn_of_other_point(comparison.curve, options.data, source.is_model() ? "the model" : "the scene",
                       scene.operating_point);
 
   // 2. Meshes and operators, coefficients, or modes, shared by all heads.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/input/reduced_model.hpp"
+#include "fom/levels/emulated_level.hpp"
 #include "fom/levels/reduced_level.hpp"
 #include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/common_problem.hpp"
@@ -21,10 +22,26 @@ namespace {
 
 LevelSource read_model_source(const std::string& file, const std::vector<std::string>& overrides,
                               const std::optional<double>& frequency_Hz,
-                              const std::optional<double>& stroke_mm) {
+                              const std::optional<double>& stroke_mm,
+                              const std::optional<double>& voltage_V) {
   if (!overrides.empty()) {
     throw InputError("a reduced model has no keys to override", "--set " + overrides.front(),
                      "--set with a scene (.toml)", file);
+  }
+  if (std::filesystem::exists(file) && rom::holds_emulator(file)) {
+    if (!frequency_Hz) {
+      throw CLI::RequiredError("--frequency");
+    }
+    LevelSource source;
+    source.file = file;
+    source.emulator = rom::load_emulator(file);
+    source.scene = scene_of_emulator(*source.emulator, file, *frequency_Hz, stroke_mm, voltage_V);
+    return source;
+  }
+  if (voltage_V) {
+    throw InputError("a reduced model of this version is driven by a stroke",
+                     "--voltage " + exact_number(*voltage_V),
+                     "--stroke; or an emulator, or a scene with [actuator]", file);
   }
   if (!frequency_Hz || !stroke_mm) {
     throw CLI::RequiredError(frequency_Hz ? "--stroke" : "--frequency");
@@ -57,12 +74,8 @@ LevelSource read_level_source(const std::string& file, std::vector<std::string> 
                               const std::optional<double>& frequency_Hz,
                               const std::optional<double>& stroke_mm,
                               const std::optional<double>& voltage_V) {
-  if (!is_scene(file) && voltage_V) {
-    throw InputError("a reduced model of this version is driven by a stroke",
-                     "--voltage " + exact_number(*voltage_V), "--stroke, or a scene with [actuator]", file);
-  }
   if (!is_scene(file)) {
-    return read_model_source(file, overrides, frequency_Hz, stroke_mm);
+    return read_model_source(file, overrides, frequency_Hz, stroke_mm, voltage_V);
   }
   if (frequency_Hz) {
     overrides.push_back("operating_point.frequency_Hz=" + exact_number(*frequency_Hz));
@@ -85,6 +98,9 @@ LevelSource read_level_source(const std::string& file, std::vector<std::string> 
 std::unique_ptr<Level> prepare(const LevelSource& source, MPI_Comm comm, PhaseTimer& timer) {
   if (source.model) {
     return std::make_unique<ReducedLevel>(*source.model);
+  }
+  if (source.emulator) {
+    return std::make_unique<EmulatedLevel>(*source.emulator);
   }
   return prepare_level(source.scene, comm, timer);
 }

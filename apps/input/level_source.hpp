@@ -1,4 +1,4 @@
-// What a command is asked about: a scene (.toml) or a reduced model (.h5), behind one door.
+// What a command is asked about: a scene (.toml), a reduced model or an emulator (.h5), behind one door.
 #pragma once
 
 #include <mpi.h>
@@ -10,6 +10,7 @@
 
 #include "apps/apps.hpp"
 #include "fom/levels/level.hpp"
+#include "rom/emulator/emulator.hpp"
 #include "rom/fixed_domain/model.hpp"
 
 namespace undula::apps {
@@ -17,8 +18,11 @@ namespace undula::apps {
 /// A file and what is stated beside it on the command line.
 struct LevelSource {
   std::string file;
-  Scene scene;                     ///< of a reduced model: scene_of_model
-  std::optional<rom::Model> model; ///< nothing for a scene
+  Scene scene;                           ///< of a model: scene_of_model, scene_of_emulator
+  std::optional<rom::Model> model;       ///< nothing for a scene
+  std::optional<rom::Emulator> emulator; ///< the same
+
+  [[nodiscard]] bool is_model() const { return model || emulator; }
 };
 
 /// Whether a file is read as a scene, by its ending (.toml in any case).
@@ -29,8 +33,8 @@ void warn_of_profile(const Scene& scene);
 
 /// Reads a scene of a pump with `--set` overrides, then `--frequency`, `--stroke` and `--voltage` (which
 /// drives the actuator of the scene) where they are given; or
-/// a reduced model, which needs frequency and stroke and has no keys to override. Throws InputError (or
-/// CLI::RequiredError for a missing frequency or stroke) for anything else.
+/// a reduced model or an emulator, which need frequency and drive and have no keys to override. Throws
+/// InputError (or CLI::RequiredError for a missing frequency or stroke) for anything else.
 LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
                               const std::optional<double>& frequency_Hz,
                               const std::optional<double>& stroke_mm,

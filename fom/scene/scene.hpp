@@ -87,9 +87,17 @@ struct Tolerance {
 };
 
 /// Box of a training campaign.
+/// What `train` makes of the runs.
+enum class ModelKind {
+  projected, ///< a POD-Galerkin model
+  emulator   ///< Gaussian processes of what the runs come to: of any level and any physics
+};
+
 struct TrainingPlan {
+  ModelKind model = ModelKind::projected;
   double frequency_low = 0, frequency_high = 0; ///< Hz
   double stroke_low = 0, stroke_high = 0;       ///< cm
+  double voltage_low = 0, voltage_high = 0;     ///< V, in place of the stroke where a voltage drives
   double head_low = 0, head_high = 0;           ///< dyn/cm^2
   int training_points = 0;                      ///< space-filling, besides the corners of the box
   int held_out_points = 0;

@@ -209,10 +209,14 @@ void check_consistency(const Scene& scene, const std::string& where) {
 void check_training(const Scene& scene, const std::string& where) {
   const TrainingPlan& plan = scene.training;
   check_bounds("frequency (Hz)", plan.frequency_low, plan.frequency_high, where);
-  check_bounds("stroke (mm)", units::length_to_mm(plan.stroke_low), units::length_to_mm(plan.stroke_high),
-               where);
+  if (scene.operating_point.drive == Drive::voltage)
+    check_bounds("voltage (V)", plan.voltage_low, plan.voltage_high, where);
+  else
+    check_bounds("stroke (mm)", units::length_to_mm(plan.stroke_low), units::length_to_mm(plan.stroke_high),
+                 where);
   check_bounds("head (mmHg)", units::pressure_to_mmHg(plan.head_low), units::pressure_to_mmHg(plan.head_high),
                where);
+  if (plan.model == ModelKind::emulator) return; // it keeps no snapshots
   if (scene.time.steps_per_period % plan.snapshots_per_period != 0) {
     throw InputError("snapshots do not fall on time steps",
                      "snapshots_per_period = " + std::to_string(plan.snapshots_per_period),

@@ -469,6 +469,14 @@ std::vector<SceneKey> training_keys() {
     return SceneKey{path, "", help, leaves_state, IntegerKey{std::move(field), low, 100000, fallback}};
   };
   return {
+      {"training.model", "",
+       "what `train` makes of its runs: a model projected from their snapshots, or an emulator, which "
+       "interpolates "
+       "what they come to, of any level",
+       leaves_state,
+       choice<FIELD(training.model)>(
+           {name("projected", ModelKind::projected), name("emulator", ModelKind::emulator)}, {},
+           "projected")},
       bound("training.frequency_low_Hz", "Hz", "lowest frequency of the box", FIELD(training.frequency_low),
             1, above_to(0, 1e5), 80),
       bound("training.frequency_high_Hz", "Hz", "highest frequency of the box",
@@ -477,6 +485,10 @@ std::vector<SceneKey> training_keys() {
             from_to(0, 100), 0.1),
       bound("training.stroke_high_mm", "mm", "highest stroke of the box", FIELD(training.stroke_high),
             cm_per_mm, from_to(0, 100), 0.8),
+      bound("training.voltage_low_V", "V", "lowest voltage of the box, where a voltage drives",
+            FIELD(training.voltage_low), 1, from_to(0, 1e6), 30),
+      bound("training.voltage_high_V", "V", "highest voltage of the box, where a voltage drives",
+            FIELD(training.voltage_high), 1, from_to(0, 1e6), 50),
       bound("training.head_low_mmHg", "mmHg", "lowest head of the box", FIELD(training.head_low), mmHg,
             from_to(-1e4, 1e4), 0),
       bound("training.head_high_mmHg", "mmHg", "highest head of the box", FIELD(training.head_high), mmHg,

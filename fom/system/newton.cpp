@@ -25,6 +25,29 @@ std::string scientific(double value) {
 
 } // namespace
 
+namespace {
+
+[[noreturn]] void not_settled(const std::string& missed, int iterations) {
+  throw NumericsError("the equations of a step did not settle: " + missed,
+                      std::to_string(iterations) + " iterations", "a smaller time step");
+}
+
+/// The iterations of `others` alone, where all solids are linear.
+template <int dim>
+int solve_others(LinearSystem<dim>& system, const Eigen::VectorXd& rhs, int most, int step, bool keep_factors,
+                 Eigen::VectorXd& x, const OtherTerms& others) {
+  std::string missed;
+  for (int iteration = 1; iteration <= most; ++iteration) {
+    if (iteration > 1 && others.renew) others.renew(x);
+    x = system.solve(rhs, step, keep_factors ? iteration : 1, &x);
+    if (others.missed) missed = others.missed(x);
+    if (missed.empty()) return iteration;
+  }
+  not_settled(missed, most);
+}
+
+} // namespace
+
 template <int dim>
 SolidResponse<dim> complete_response(const Discretisation<dim>& disc, const Operators<dim>& operators,
                                      const Eigen::VectorXd& d, const Eigen::VectorXd& v,
@@ -43,6 +66,8 @@ template <int dim>
 int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, const Operators<dim>& operators,
                  const SolidMotion& motion, const Eigen::VectorXd& rhs, const NewtonSettings& settings,
                  int step, bool keep_factors, Eigen::VectorXd& x, const OtherTerms& others) {
+  if (!operators.has_nonlinear_solid)
+    return solve_others(system, rhs, settings.max_iterations, step, keep_factors, x, others);
   const auto& cells = operators.nonlinear_cells;
   // Only the unknowns of solids enter, and only balances that are asked for count.
   const auto free = [&](Eigen::VectorXd values) {
@@ -74,9 +99,8 @@ int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, con
     const Eigen::VectorXd force = here.elastic + here.viscous;
     if (!force.allFinite()) give_up("the law is not finite, an element is inside out", iteration, error);
     system.replace_tangents(here.tangents);
-    Eigen::VectorXd next = system.solve(
-        rhs + free(product(here, x, false) - force), step, keep_factors ? iteration : 1, &x,
-        operators.has_nonlinear_solid ? correction * settings.tolerance : system.linear_tolerance);
+    Eigen::VectorXd next = system.solve(rhs + free(product(here, x, false) - force), step,
+                                        keep_factors ? iteration : 1, &x, correction * settings.tolerance);
     const Eigen::VectorXd linear = force + product(here, next - x, false);
     const double rounding = 4 * std::numeric_limits<double>::epsilon() *
                             product(here, displacement(next), true).norm() / motion.rates.d;
@@ -92,9 +116,7 @@ int solve_newton(LinearSystem<dim>& system, const Discretisation<dim>& disc, con
     if (there.smallest_volume_ratio <= 0) give_up("an element is inside out", iteration, error);
     return iteration;
   }
-  if (!missed.empty())
-    throw NumericsError("the equations of a step did not settle: " + missed,
-                        std::to_string(settings.max_iterations) + " iterations", "a smaller time step");
+  if (!missed.empty()) not_settled(missed, settings.max_iterations);
   give_up("no convergence", settings.max_iterations, error);
 }
 

@@ -45,17 +45,25 @@ void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, cons
   int rank = 0;
   MPI_Comm_rank(group, &rank);
 
-  std::unique_ptr<FiniteElementLevel>
-      level; // made when the first point is claimed: a finished plan costs nothing
+  // Made when the first point is claimed: a finished plan costs nothing.
+  std::unique_ptr<FiniteElementLevel> projected;
   PhaseTimer timer;
+  const auto run_of = [&](const Scene& at_point) {
+    if (scene.training.model == ModelKind::emulator) {
+      // Weights may be derived from frequency and stroke: the level is the one that `hq` prepares there.
+      const auto level = prepare_level(at_point, group, timer);
+      return record_flow(*level, at_point, group, after_step);
+    }
+    if (!projected) projected = std::make_unique<FiniteElementLevel>(scene, group, timer);
+    return record_run(*projected, at_point, after_step);
+  };
   for (;;) {
     auto next = rank == 0 ? claim_next(plan, store) : NextPoint{};
     MPI_Bcast(&next.index, 1, MPI_INT, 0, group);
     if (next.index < 0) break;
-    if (!level) level = std::make_unique<FiniteElementLevel>(scene, group, timer);
     Scene at_point = scene;
     at_point.operating_point = plan[static_cast<std::size_t>(next.index)];
-    const auto record = record_run(*level, at_point, after_step);
+    const auto record = run_of(at_point);
     if (rank == 0) {
       store.store(*next.claim, record);
       if (progress) progress(record, plan.size() - store.status(plan).pending.size(), plan.size());

@@ -56,7 +56,10 @@ void remove_partials(const std::filesystem::path& target) {
 std::string difference(const std::string& before, const std::string& now) {
   auto keys = differing_keys(before, now);
   std::erase_if(keys, [](const KeyDifference& one) {
-    return one.key == "name" || one.key.starts_with("output.") || one.key.starts_with("operating_point.");
+    const bool along_the_box =
+        one.key == "operating_point.frequency_Hz" || one.key == "operating_point.stroke_mm" ||
+        one.key == "operating_point.voltage_V" || one.key == "operating_point.head_mmHg";
+    return one.key == "name" || one.key.starts_with("output.") || along_the_box;
   });
   return difference_text(keys);
 }
@@ -78,11 +81,21 @@ void check_stamp(const std::filesystem::path& path, const SceneStamp& stamp) {
 SceneStamp stamp_campaign(const Scene& scene) {
   Scene common = scene;
   common.operating_point = {scene.training.frequency_low, scene.training.stroke_low, scene.training.head_low};
+  const bool emulated = scene.training.model == ModelKind::emulator;
+  if (emulated) {
+    common.operating_point.drive = scene.operating_point.drive;
+    common.operating_point.stroke_scale = scene.operating_point.stroke_scale;
+    if (scene.operating_point.drive == Drive::voltage) {
+      common.operating_point.stroke = scene.operating_point.stroke; // thin gaps take a scale from it
+      common.operating_point.voltage = scene.training.voltage_low;
+    }
+  }
   auto stamp = stamp_scene(common);
   stamp.hash += "-" + std::to_string(scene.time.periods) + "-" +
                 std::to_string(scene.training.sampled_periods) + "-" +
                 std::to_string(scene.training.snapshots_per_period) + "-" +
-                exact_number(scene.training.periodic_tolerance);
+                exact_number(scene.training.periodic_tolerance) +
+                (emulated ? "-flows-" + exact_number(scene.time.flow_error) : "");
   return stamp;
 }
 
@@ -135,8 +148,10 @@ void CampaignStore::remove_leftovers() const {
 }
 
 std::filesystem::path CampaignStore::record_file(const OperatingPoint& point) const {
-  return folder_ / (exact_number(point.frequency) + "Hz_" + exact_number(point.stroke) + "cm_" +
-                    exact_number(point.head) + "dyn_per_cm2.h5");
+  const std::string drive =
+      point.drive == Drive::voltage ? exact_number(point.voltage) + "V_" : exact_number(point.stroke) + "cm_";
+  return folder_ /
+         (exact_number(point.frequency) + "Hz_" + drive + exact_number(point.head) + "dyn_per_cm2.h5");
 }
 
 bool CampaignStore::is_done(const OperatingPoint& point) const {

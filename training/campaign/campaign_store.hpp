@@ -36,6 +36,7 @@ struct RunRecord {
   std::vector<double> times;                  ///< [snapshot], s
   std::map<std::string, Snapshots> snapshots; ///< by field; as many columns as `times` has entries
   CycleMeans cycles;                          ///< of all periods
+  int plain_periods = 0;                      ///< PeriodicRun::plain_periods; 0: not recorded
   std::map<std::string, double> seconds;      ///< wall time by phase, "total" among them
 };
 

@@ -46,6 +46,28 @@ struct Sampler {
 
 } // namespace
 
+namespace {
+
+RunRecord record_of(const Scene& scene, PeriodicRun run) {
+  RunRecord record;
+  record.point = scene.operating_point;
+  record.state = run.state;
+  record.reason = std::move(run.reason);
+  record.cycles = std::move(run.cycles);
+  record.plain_periods = run.plain_periods;
+  record.seconds = std::move(run.seconds);
+  return record;
+}
+
+} // namespace
+
+RunRecord record_flow(MarchingLevel& level, const Scene& scene, MPI_Comm comm, const AfterStep& after_step) {
+  State state = level.initial_state();
+  return record_of(scene, march_until_periodic(level, scene, state, [&](const State&, const Observation&) {
+                     if (after_step) after_step(comm);
+                   }));
+}
+
 std::vector<int> velocity_unknowns(const Discretisation<2>& disc) {
   std::vector<int> unknowns;
   for (int node = 0; node < disc.velocity_nodes(); ++node)
@@ -80,12 +102,7 @@ RunRecord record_run(FiniteElementLevel& level, const Scene& scene, const AfterS
     if (after_step) after_step(comm);
     sampler.take(now);
   });
-  RunRecord record;
-  record.point = scene.operating_point;
-  record.state = run.state;
-  record.reason = std::move(run.reason);
-  record.cycles = std::move(run.cycles);
-  record.seconds = std::move(run.seconds);
+  RunRecord record = record_of(scene, std::move(run));
   sampler.write(level.prepared().disc, record);
   return record;
 }

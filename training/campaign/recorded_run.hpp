@@ -14,6 +14,11 @@ namespace undula::training {
 /// every step on every rank; what it throws, other than a NumericsError, ends the run without a record.
 RunRecord record_run(FiniteElementLevel& level, const Scene& scene, const AfterStep& after_step = {});
 
+/// The same of any level, without snapshots, and ended by scene.time.flow_error where that is stated.
+/// `comm`: the level's.
+RunRecord record_flow(MarchingLevel& level, const Scene& scene, MPI_Comm comm,
+                      const AfterStep& after_step = {});
+
 /// Places of a field in the natural order of unknowns; the rows of its snapshots.
 std::vector<int> velocity_unknowns(const Discretisation<2>& disc);
 std::vector<int> pressure_unknowns(const Discretisation<2>& disc);

@@ -33,11 +33,18 @@ RunState state_of(const std::string& seen, const std::filesystem::path& file) {
 
 OperatingPoint read_point(const Hdf5File& file) {
   const auto get = [&](const char* name) { return file.read<double>(name, {}).front(); };
-  return {get("point/frequency"), get("point/stroke"), get("point/head")};
+  OperatingPoint point{get("point/frequency"), get("point/stroke"), get("point/head")};
+  if (file.exists("point/voltage")) {
+    point.drive = Drive::voltage;
+    point.voltage = get("point/voltage");
+  }
+  return point;
 }
 
 std::string point_text(const OperatingPoint& point) {
-  return exact_number(point.frequency) + " Hz, " + exact_number(point.stroke) + " cm, " +
+  return exact_number(point.frequency) + " Hz, " +
+         (point.drive == Drive::voltage ? exact_number(point.voltage) + " V, "
+                                        : exact_number(point.stroke) + " cm, ") +
          exact_number(point.head) + " dyn/cm^2";
 }
 
@@ -94,7 +101,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 } // namespace
 
 bool same_point(const OperatingPoint& a, const OperatingPoint& b) {
-  return a.frequency == b.frequency && a.stroke == b.stroke && a.head == b.head;
+  return a.frequency == b.frequency && a.head == b.head && a.drive == b.drive &&
+         (a.drive == Drive::voltage ? a.voltage == b.voltage : a.stroke == b.stroke);
 }
 
 void write_run_record(const RunRecord& record, const std::string& campaign_hash,
@@ -111,6 +119,7 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
   put("point/frequency", record.point.frequency, "Hz");
   put("point/stroke", record.point.stroke, "cm");
   put("point/head", record.point.head, "dyn/cm^2");
+  if (record.point.drive == Drive::voltage) put("point/voltage", record.point.voltage, "V");
   file.write("times", std::span(record.times), {record.times.size()}, "s");
   // A column-major [unknown][snapshot] matrix is a row-major [snapshot][unknown] array.
   file.create_group("snapshots");
@@ -123,6 +132,7 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
   const Hdf5File::Shape shape{cycles.periods.size(), cycles.columns.size()};
   file.write_text("cycles/columns", joined(cycles.columns));
   file.write("cycles/periods", std::span(cycles.periods));
+  file.write("cycles/plain_periods", std::vector<int>{record.plain_periods});
   file.write("cycles/mean", std::span(cycles.mean), shape);
   file.write("cycles/minimum", std::span(cycles.minimum), shape);
   file.write("cycles/maximum", std::span(cycles.maximum), shape);
@@ -152,6 +162,8 @@ RunRecord read_run_record(const std::filesystem::path& path, const std::string& 
   }
   record.cycles.columns = lines_of(file.read_text("cycles/columns"));
   record.cycles.periods = file.read<int>("cycles/periods");
+  if (file.exists("cycles/plain_periods"))
+    record.plain_periods = file.read<int>("cycles/plain_periods", {1}).front();
   record.cycles.mean = file.read<double>("cycles/mean");
   record.cycles.minimum = file.read<double>("cycles/minimum");
   record.cycles.maximum = file.read<double>("cycles/maximum");

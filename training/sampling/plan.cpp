@@ -61,7 +61,8 @@ double squared_distance(const UnitPoint& a, const UnitPoint& b) {
 }
 
 struct Box {
-  UnitPoint low{}, high{}; // Hz, cm, dyn/cm^2
+  UnitPoint low{}, high{}; // Hz, cm or V, dyn/cm^2
+  OperatingPoint like;
   bool has_width(int i) const { return high[i] > low[i]; }
 
   UnitPoint without_fixed(UnitPoint point) const {
@@ -74,7 +75,11 @@ struct Box {
     // Corners must be the bounds to the last bit.
     for (int i = 0; i < ranges; ++i)
       x[i] = point[i] == 1 ? high[i] : std::min(high[i], low[i] + point[i] * (high[i] - low[i]));
-    return {x[0], x[1], x[2]};
+    OperatingPoint result = like;
+    result.frequency = x[0];
+    (like.drive == Drive::voltage ? result.voltage : result.stroke) = x[1];
+    result.head = x[2];
+    return result;
   }
 };
 
@@ -85,13 +90,18 @@ void check_range(const char* name, double low, double high, const char* unit) {
                    "section [training] of the scene");
 }
 
-Box checked_box(const TrainingPlan& plan) {
+Box checked_box(const TrainingPlan& plan, const OperatingPoint& like) {
+  const bool by_voltage = like.drive == Drive::voltage;
   check_range("frequency", plan.frequency_low, plan.frequency_high, "Hz");
-  check_range("stroke", units::length_to_mm(plan.stroke_low), units::length_to_mm(plan.stroke_high), "mm");
+  if (by_voltage)
+    check_range("voltage", plan.voltage_low, plan.voltage_high, "V");
+  else
+    check_range("stroke", units::length_to_mm(plan.stroke_low), units::length_to_mm(plan.stroke_high), "mm");
   check_range("head", units::pressure_to_mmHg(plan.head_low), units::pressure_to_mmHg(plan.head_high),
               "mmHg");
-  const Box box{{plan.frequency_low, plan.stroke_low, plan.head_low},
-                {plan.frequency_high, plan.stroke_high, plan.head_high}};
+  const Box box{{plan.frequency_low, by_voltage ? plan.voltage_low : plan.stroke_low, plan.head_low},
+                {plan.frequency_high, by_voltage ? plan.voltage_high : plan.stroke_high, plan.head_high},
+                like};
   const bool any_width = box.has_width(0) || box.has_width(1) || box.has_width(2);
   if (plan.training_points < 0 || plan.held_out_points < 0 ||
       (!any_width && plan.training_points + plan.held_out_points > 0))
@@ -147,8 +157,16 @@ std::vector<OperatingPoint> in_units(const Box& box, const std::vector<UnitPoint
 
 } // namespace
 
-SamplingPlan plan_samples(const TrainingPlan& plan) {
-  const Box box = checked_box(plan);
+std::vector<OperatingPoint> candidate_points(const TrainingPlan& plan, const OperatingPoint& like) {
+  const Box box = checked_box(plan, like);
+  const ScrambledHalton halton(4107);
+  std::vector<UnitPoint> points;
+  for (int k = 1; k <= candidates; ++k) points.push_back(box.without_fixed(halton(k)));
+  return in_units(box, points);
+}
+
+SamplingPlan plan_samples(const TrainingPlan& plan, const OperatingPoint& like) {
+  const Box box = checked_box(plan, like);
   auto training = corners(box);
   const ScrambledHalton halton(7);
   for (int k = 1; k <= plan.training_points; ++k) training.push_back(box.without_fixed(halton(k)));

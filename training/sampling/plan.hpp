@@ -13,7 +13,8 @@ struct SamplingPlan {
   std::vector<OperatingPoint> held_out; ///< never trained on; strictly inside the box
 };
 
-/// Lays out the points of `box`, the same on every machine.
+/// Lays out the points of `box`, the same on every machine. What drives, and what else a point states, is
+/// that of `like`.
 ///
 /// Training: the corners, then the first `training_points` of a Halton sequence with scrambled digits; a
 /// larger count keeps the earlier points, so that a campaign can be extended. Held out: chosen one after the
@@ -24,6 +25,10 @@ struct SamplingPlan {
 ///
 /// A range of zero width is a fixed value; with d = 0 there is one training point and nothing may be held
 /// out. Throws InputError for a range with low > high, a negative count, or points in a box without width.
-SamplingPlan plan_samples(const TrainingPlan& box);
+SamplingPlan plan_samples(const TrainingPlan& box, const OperatingPoint& like = {});
+
+/// Points of a dense scrambled Halton set over the whole box, for who looks for the best of them; the same on
+/// every machine, and none of `plan_samples`. Throws as that does.
+std::vector<OperatingPoint> candidate_points(const TrainingPlan& box, const OperatingPoint& like = {});
 
 } // namespace undula::training

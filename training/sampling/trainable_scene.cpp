@@ -15,9 +15,12 @@ void require_trainable(const Scene& scene) {
     if (!stated) return;
     throw InputError(what, seen, allowed, scene.file.string() + ", section [" + section + "]");
   };
+  if (scene.training.model == ModelKind::emulator) return; // it takes what any level computes
   refuse(scene.space == Space::thin_gap, "a thin-gap scene needs no reduced model",
          "model.space = \"thin-gap\"",
-         "undula hq on the scene itself, which takes seconds; or a scene of finite elements", "model");
+         "undula hq on the scene itself, which takes seconds; training.model = \"emulator\"; or a scene of "
+         "finite elements",
+         "model");
   refuse(scene.coupling != Coupling::fixed, "a reduced model is projected from operators that never change",
          std::string("model.coupling = \"") + coupling_name(scene.coupling) + "\"", "coupling = \"fixed\"",
          "model");

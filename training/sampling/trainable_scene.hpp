@@ -8,7 +8,8 @@ namespace undula::training {
 
 /// Throws InputError, with section and what to write, for a scene that states physics a projection would
 /// leave out: a problem of its own, thin gaps, a fluid's domain that moves, contact, a nonlinear solid,
-/// slip, penalties that depend on the flow, a scaled stroke. To be called before the first run.
+/// slip, penalties that depend on the flow, a scaled stroke. An emulator leaves nothing out: any pump. To be
+/// called before the first run.
 void require_trainable(const Scene& scene);
 
 } // namespace undula::training

@@ -1,0 +1,74 @@
+// Mean flow, powers, stroke and clearance of a pump over a box of operating points, interpolated from runs of
+// another level: answers in microseconds, each with an error.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rom/emulator/gaussian_process.hpp"
+
+namespace undula::rom {
+
+/// A range of an operating point's number, surface units. A range without width is a fixed value.
+struct EmulatorInput {
+  std::string name, unit;
+  double low = 0, high = 0;
+};
+
+/// Frequency, drive, head, in this order.
+inline constexpr int emulator_inputs = 3;
+using EmulatorPoint = std::array<double, emulator_inputs>;
+
+struct EmulatedQuantity {
+  std::string name, unit;
+  GaussianProcess process; ///< over the inputs that have a width, scaled to the unit interval
+  /// Stated error over the process's deviation: what holds for nine in ten of the runs, each left out.
+  double error_factor = 1;
+};
+
+/// One run that the emulator knows, and what it says of it when it does not.
+struct EmulatorRun {
+  EmulatorPoint point{};
+  double flow_l_per_min = 0, standard_error_l_per_min = 0;   ///< 0: periodic
+  bool held_out = false;                                     ///< in no process
+  double emulated_l_per_min = 0, stated_error_l_per_min = 0; ///< left out
+  double seconds = 0;
+};
+
+struct Emulator {
+  bool driven_by_voltage = false; ///< the drive is an amplitude in V, else a stroke in mm
+  std::array<EmulatorInput, emulator_inputs> inputs;
+  std::vector<EmulatedQuantity> quantities; ///< the mean outflow, l/min, first
+  std::vector<EmulatorRun> runs;
+  std::map<std::string, std::string> provenance; ///< as of Model
+};
+
+struct EmulatedValue {
+  double value = 0;
+  double error = 0; ///< what nine in ten are within; infinite far outside of the box
+};
+
+struct EmulatedPoint {
+  std::vector<EmulatedValue> values; ///< by Emulator::quantities
+  bool inside_training_box = false;
+};
+
+/// What the emulator says of one operating point. Outside of the box errors grow as growth_outside_box.
+EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point);
+
+/// The coordinates of a point in an emulator's processes.
+Eigen::VectorXd scaled_point(const Emulator& emulator, const EmulatorPoint& point);
+
+/// Reads an emulator (HDF5). Throws InputError for a missing, damaged or foreign file and for contents that
+/// make no emulator.
+Emulator load_emulator(const std::string& file);
+
+/// Writes it under a temporary name, then renames it.
+void save_emulator(const Emulator& emulator, const std::string& file);
+
+/// Whether a file says of itself that it holds an emulator. Throws InputError where it cannot be read.
+bool holds_emulator(const std::string& file);
+
+} // namespace undula::rom
