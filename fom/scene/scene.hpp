@@ -86,13 +86,13 @@ struct Tolerance {
   double tolerance = 0; ///< in the unit of the key
 };
 
-/// Box of a training campaign.
 /// What `train` makes of the runs.
 enum class ModelKind {
   projected, ///< a POD-Galerkin model
   emulator   ///< Gaussian processes of what the runs come to: of any level and any physics
 };
 
+/// Box of a training campaign.
 struct TrainingPlan {
   ModelKind model = ModelKind::projected;
   double frequency_low = 0, frequency_high = 0; ///< Hz
