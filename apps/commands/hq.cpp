@@ -27,6 +27,7 @@
 #include "apps/output/curve_warnings.hpp"
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/text_table.hpp"
+#include "fom/levels/emulated_level.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/scene/operating_point.hpp"
 #include "fom/scene/scene_value.hpp"
@@ -68,13 +69,10 @@ LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, boo
     if (!is_scene(options.beside)) {
       return read_level_source(options.beside, {}, point.frequency, {}, point.voltage);
     }
-    if (of_emulator) {
-      const auto own = read_level_source(options.beside, {}, point.frequency, {});
-      if (own.scene.operating_point.drive == Drive::voltage) {
-        return read_level_source(options.beside, {}, point.frequency, {}, point.voltage);
-      }
-    }
     auto beside = read_level_source(options.beside, {}, point.frequency, {});
+    if (of_emulator && beside.scene.operating_point.drive == Drive::voltage) {
+      return read_level_source(options.beside, {}, point.frequency, {}, point.voltage);
+    }
     if (beside.scene.operating_point.drive == Drive::stroke && data != nullptr && data->stroke_mm) {
       return read_level_source(options.beside, {}, point.frequency, data->stroke_mm);
     }
@@ -174,10 +172,11 @@ Question read_question(const HqCommandOptions& options) {
                         voltages.empty() ? std::nullopt : std::optional(voltages.front()));
   question.scenes = {question.source.scene};
   for (std::size_t k = 1; k < voltages.size(); ++k) {
-    // A model's scene is no whole one: it is made again instead of changed.
+    // An emulator's scene is no whole one: it is made again instead of changed.
     question.scenes.push_back(
-        question.source.is_model()
-            ? read_level_source(options.file, {}, options.frequency_Hz, options.stroke_mm, voltages[k]).scene
+        question.source.emulator
+            ? scene_of_emulator(*question.source.emulator, options.file, *options.frequency_Hz, {},
+                                voltages[k])
             : with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
   }
   const Scene& scene = question.scenes.front();

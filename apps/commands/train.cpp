@@ -220,13 +220,15 @@ void add_runs(const TrainOptions& options, const Scene& scene, const CampaignSto
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   const int groups = std::max(1, ranks / scene.training.ranks_per_run);
+  const auto flow_alone = std::span(emulated_columns).first(1);
   while (true) {
     std::vector<OperatingPoint> wanted;
     on_root(comm, [&] {
       if (!store.status(points).pending.empty()) {
         return;
       }
-      const auto next = next_points(build_emulator(scene, plan, store).emulator, scene, points, groups);
+      const auto next =
+          next_points(build_emulator(scene, plan, store, flow_alone).emulator, scene, points, groups);
       const int left = options.most_runs - static_cast<int>(points.size());
       spdlog::info("{} runs: largest stated error of the box {} l/min", points.size(),
                    decimals(next.largest_error, 4));
@@ -299,11 +301,12 @@ void train(const TrainOptions& options, MPI_Comm comm) {
                    pending.size());
       return;
     }
+    auto origin = provenance(ranks);
+    origin["scene"] = scene_to_toml(scene);
+    origin["scene_hash"] = scene_hash(scene);
     if (emulated) {
       BuiltEmulator built = build_emulator(scene, plan, *store);
-      built.emulator.provenance = provenance(ranks);
-      built.emulator.provenance["scene"] = scene_to_toml(scene);
-      built.emulator.provenance["scene_hash"] = scene_hash(scene);
+      built.emulator.provenance = origin;
       rom::save_emulator(built.emulator, output);
       for (const std::string& message : built.not_used) {
         spdlog::warn("not used: {}", message);
@@ -313,9 +316,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     }
     PhaseTimer timer;
     TrainedModel trained = build_model(scene, plan, *store, timer);
-    trained.model.provenance = provenance(ranks);
-    trained.model.provenance["scene"] = scene_to_toml(scene);
-    trained.model.provenance["scene_hash"] = scene_hash(scene);
+    trained.model.provenance = origin;
     rom::save_model(trained.model, output);
     for (const std::string& message : trained.left_out) {
       spdlog::warn("left out, not periodic: {}", message);

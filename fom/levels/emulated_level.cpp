@@ -1,37 +1,33 @@
 #include "fom/levels/emulated_level.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 
 #include "fom/levels/emulated_quantities.hpp"
+#include "fom/levels/marched_curve.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
+#include "rom/curve/hq_curve.hpp"
 
 namespace undula::fom {
-namespace {
 
-rom::EmulatorPoint point_at(const Scene& scene, double head_mmHg) {
-  const auto& at = scene.operating_point;
-  return {at.frequency, at.drive == Drive::voltage ? at.voltage : units::length_to_mm(at.stroke), head_mmHg};
+rom::EmulatorPoint emulator_point(const OperatingPoint& at) {
+  return {at.frequency, at.drive == Drive::voltage ? at.voltage : units::length_to_mm(at.stroke),
+          units::pressure_to_mmHg(at.head)};
 }
-
-std::string shown(double value, const rom::EmulatorInput& input) {
-  return input.name + " " + plain_number(value) + " " + input.unit;
-}
-
-} // namespace
 
 int EmulatedLevel::unknowns() const { return static_cast<int>(emulator_.runs.size()); }
 
 std::vector<CurvePoint> EmulatedLevel::curve(const Scene& scene, std::span<const double> heads_mmHg,
                                              const std::function<void()>& on_point) {
   std::vector<CurvePoint> points;
+  auto at = emulator_point(scene.operating_point);
   for (const double head : heads_mmHg) {
+    at[2] = head;
     const auto begin = std::chrono::steady_clock::now();
-    const auto answer = rom::emulate(emulator_, point_at(scene, head));
+    const auto answer = rom::emulate(emulator_, at);
     CurvePoint point;
     point.head_mmHg = head;
     for (std::size_t q = 0; q < answer.values.size(); ++q)
@@ -42,11 +38,7 @@ std::vector<CurvePoint> EmulatedLevel::curve(const Scene& scene, std::span<const
     point.inside_training_box = answer.inside_training_box;
     point.power_mW = units::power_to_mW(units::pressure_from_mmHg(head) *
                                         units::flow_from_l_per_min(point.flow_l_per_min));
-    for (const double power : {point.electrical_power_mW, point.actuator_power_mW, point.holder_power_mW})
-      if (std::isfinite(power) && power > 0) {
-        point.efficiency_percent = 100 * point.power_mW / power;
-        break;
-      }
+    point.efficiency_percent = efficiency_percent(point);
     point.periodic = true;
     point.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     points.push_back(point);
@@ -57,18 +49,10 @@ std::vector<CurvePoint> EmulatedLevel::curve(const Scene& scene, std::span<const
 
 std::vector<std::string> EmulatedLevel::remarks(const Scene& scene,
                                                 std::span<const double> heads_mmHg) const {
-  std::vector<std::string> sentences;
-  const auto outside = [&](double value, const rom::EmulatorInput& input) {
-    const double slack = 1e-9 * std::max(std::abs(input.low), std::abs(input.high));
-    if (value >= input.low - slack && value <= input.high + slack) return;
-    sentences.push_back(shown(value, input) + " is outside the trained " + plain_number(input.low) + " to " +
-                        plain_number(input.high) + " " + input.unit);
-  };
-  const auto point = point_at(scene, 0);
-  outside(point[0], emulator_.inputs[0]);
-  outside(point[1], emulator_.inputs[1]);
-  for (const double head : heads_mmHg) outside(head, emulator_.inputs[2]);
-  return sentences;
+  const auto point = emulator_point(scene.operating_point);
+  const auto& drive = emulator_.inputs[1];
+  return rom::outside_training_box(rom::training_box(emulator_), point[0], point[1], heads_mmHg,
+                                   {drive.name.c_str(), drive.unit.c_str()});
 }
 
 Scene scene_of_emulator(const rom::Emulator& emulator, const std::string& file, double frequency_Hz,

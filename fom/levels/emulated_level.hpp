@@ -27,6 +27,9 @@ private:
   rom::Emulator emulator_;
 };
 
+/// Frequency, drive and head of an operating point, as emulators take them; the stroke is the nominal one.
+rom::EmulatorPoint emulator_point(const OperatingPoint& at);
+
 /// What an emulator says of the scene it stands for: operating point, drive and box alone. The head is the
 /// middle of the box. Throws InputError for a missing drive, one of the wrong kind, or numbers that are no
 /// operating point.

@@ -82,6 +82,12 @@ std::vector<CurvePoint> curve_from_head_to_head(MarchingLevel& level, const Scen
 
 } // namespace
 
+double efficiency_percent(const CurvePoint& point) {
+  for (const double power : {point.electrical_power_mW, point.actuator_power_mW, point.holder_power_mW})
+    if (std::isfinite(power) && power > 0) return 100 * point.power_mW / power;
+  return CurvePoint::unknown;
+}
+
 CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   CurvePoint point;
   point.head_mmHg = head_mmHg;
@@ -142,11 +148,7 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   }
   if (const double power = mean("actuator_power_mW"); power != 0) point.actuator_power_mW = power;
   if (const double power = mean("electrical_power_mW"); power != 0) point.electrical_power_mW = power;
-  for (const double power : {point.electrical_power_mW, point.actuator_power_mW, point.holder_power_mW})
-    if (std::isfinite(power) && power > 0) {
-      point.efficiency_percent = 100 * point.power_mW / power;
-      break;
-    }
+  point.efficiency_percent = efficiency_percent(point);
   point.speed_max_cm_per_s = std::ranges::max(last_of(cycles.maximum, "speed_max_cm_per_s"));
   if (const double rate = mean("damage_rate_cm3_per_s"); std::isfinite(rate)) {
     point.haemolysis_percent =

@@ -52,18 +52,18 @@ void check_operating_point(double frequency_Hz, double stroke_mm, std::span<cons
     if (!std::isfinite(head)) fail("the head must be a finite number", head, "mmHg", "finite");
 }
 
-std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double stroke_mm,
-                                              std::span<const double> heads_mmHg) {
+std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double drive,
+                                              std::span<const double> heads_mmHg, const DriveUnit& unit) {
   std::vector<std::string> lines;
-  const auto check = [&](const char* name, double value, double low, double high, const char* unit) {
+  const auto check = [&](const char* name, double value, double low, double high, const char* in) {
     if (inside(value, low, high)) return;
     std::ostringstream text;
-    text << name << " " << value << " " << unit << " is outside the trained " << low << " to " << high << " "
-         << unit;
+    text << name << " " << value << " " << in << " is outside the trained " << low << " to " << high << " "
+         << in;
     lines.push_back(text.str());
   };
   check("frequency", frequency_Hz, box.frequency_low_Hz, box.frequency_high_Hz, "Hz");
-  check("stroke", stroke_mm, box.stroke_low_mm, box.stroke_high_mm, "mm");
+  check(unit.name, drive, box.stroke_low_mm, box.stroke_high_mm, unit.unit);
   for (const double head : heads_mmHg) check("head", head, box.head_low_mmHg, box.head_high_mmHg, "mmHg");
   return lines;
 }

@@ -48,9 +48,15 @@ std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double st
 /// Throws InputError for a frequency or stroke that is not positive, or a head that is not finite.
 void check_operating_point(double frequency_Hz, double stroke_mm, std::span<const double> heads_mmHg);
 
+/// What drives the pump of a box whose stroke may stand for something else.
+struct DriveUnit {
+  const char* name = "stroke";
+  const char* unit = "mm";
+};
+
 /// One line for each parameter that leaves the training box ("frequency 150 Hz is outside the trained 80 to
 /// 140 Hz"). Empty: all inside.
-std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double stroke_mm,
-                                              std::span<const double> heads_mmHg);
+std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double drive,
+                                              std::span<const double> heads_mmHg, const DriveUnit& unit = {});
 
 } // namespace undula::rom

@@ -16,11 +16,14 @@ Eigen::VectorXd scaled_point(const Emulator& emulator, const EmulatorPoint& poin
   return scaled.head(count);
 }
 
+TrainingBox training_box(const Emulator& emulator) {
+  const auto& [frequency, drive, head] = emulator.inputs;
+  return {frequency.low, frequency.high, drive.low, drive.high, head.low, head.high};
+}
+
 EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point) {
   const Eigen::VectorXd x = scaled_point(emulator, point);
-  const auto& [frequency, drive, head] = emulator.inputs;
-  const TrainingBox box{frequency.low, frequency.high, drive.low, drive.high, head.low, head.high};
-  const double growth = growth_outside_box(box, point[0], point[1], point[2]);
+  const double growth = growth_outside_box(training_box(emulator), point[0], point[1], point[2]);
   EmulatedPoint result;
   result.inside_training_box = growth == 1;
   for (const auto& quantity : emulator.quantities) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "rom/emulator/gaussian_process.hpp"
+#include "rom/fixed_domain/model.hpp"
 
 namespace undula::rom {
 
@@ -54,6 +55,9 @@ struct EmulatedPoint {
   std::vector<EmulatedValue> values; ///< by Emulator::quantities
   bool inside_training_box = false;
 };
+
+/// The box of its inputs; the drive, mm or V, in the place of the stroke.
+TrainingBox training_box(const Emulator& emulator);
 
 /// What the emulator says of one operating point. Outside of the box errors grow as growth_outside_box.
 EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "fom/levels/emulated_quantities.hpp"
+#include "fom/levels/emulated_level.hpp"
 #include "fom/levels/marched_curve.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
@@ -19,11 +19,6 @@ struct KnownRun {
   rom::EmulatorRun run;
   CurvePoint point;
 };
-
-rom::EmulatorPoint surface_point(const OperatingPoint& at) {
-  return {at.frequency, at.drive == Drive::voltage ? at.voltage : units::length_to_mm(at.stroke),
-          units::pressure_to_mmHg(at.head)};
-}
 
 std::string point_text(const rom::Emulator& emulator, const rom::EmulatorPoint& point) {
   std::string text;
@@ -55,7 +50,7 @@ std::optional<KnownRun> known_run(const Scene& scene, const RunRecord& record, s
     why = "it does not repeat, and too few periods tell its mean";
     return std::nullopt;
   }
-  known.run.point = surface_point(record.point);
+  known.run.point = emulator_point(record.point);
   known.run.flow_l_per_min = known.point.flow_l_per_min;
   known.run.standard_error_l_per_min = known.point.periodic ? 0 : known.point.standard_error_l_per_min;
   if (const auto total = record.seconds.find("total"); total != record.seconds.end())
@@ -100,7 +95,8 @@ std::array<rom::EmulatorInput, rom::emulator_inputs> inputs_of(const Scene& scen
 
 } // namespace
 
-BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store) {
+BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store,
+                             std::span<const EmulatedColumn> columns) {
   BuiltEmulator built;
   auto& emulator = built.emulator;
   emulator.driven_by_voltage = scene.operating_point.drive == Drive::voltage;
@@ -114,7 +110,7 @@ BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const
         known->run.held_out = held;
         (held ? held_out : training).push_back(std::move(*known));
       } else {
-        built.not_used.push_back(point_text(emulator, surface_point(at)) + ": " + why);
+        built.not_used.push_back(point_text(emulator, emulator_point(at)) + ": " + why);
       }
     }
   };
@@ -133,7 +129,7 @@ BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const
   Eigen::MatrixXd points(inputs, count);
   for (Eigen::Index i = 0; i < count; ++i)
     points.col(i) = scaled_point(emulator, training[static_cast<std::size_t>(i)].run.point);
-  for (const auto& column : emulated_columns) {
+  for (const auto& column : columns) {
     const bool is_flow = emulator.quantities.empty();
     Eigen::VectorXd values(count), noise = Eigen::VectorXd::Zero(count);
     for (Eigen::Index i = 0; i < count; ++i) {

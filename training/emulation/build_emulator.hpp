@@ -1,9 +1,11 @@
 // From the runs of a campaign to an emulator of the pump.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "fom/levels/emulated_quantities.hpp"
 #include "rom/emulator/emulator.hpp"
 #include "training/campaign/campaign_store.hpp"
 #include "training/sampling/plan.hpp"
@@ -26,10 +28,11 @@ struct BuiltEmulator {
   std::vector<std::string> not_used; ///< runs that failed or whose mean is not known, and why
 };
 
-/// A process per quantity of a curve's point (fom/levels/emulated_quantities.hpp) that all used training runs
+/// A process per quantity of `columns`, the mean flow first, that all used training runs
 /// know. The standard error of a mean flow that does not repeat is the noise of its value. What an error has
 /// to be multiplied by to cover nine in ten runs comes from leaving each out. Throws InputError for too few
 /// runs that can be used.
-BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store);
+BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store,
+                             std::span<const EmulatedColumn> columns = emulated_columns);
 
 } // namespace undula::training

@@ -61,8 +61,8 @@ double objective(unsigned, const double* x, double*, void* data) {
 rom::GaussianProcess fit_process(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                  const Eigen::VectorXd& noise) {
   const auto inputs = static_cast<unsigned>(points.rows());
-  if (points.cols() < points.rows() + 2 || values.size() != points.cols() || noise.size() != points.cols())
-    return {points, values, noise, {Eigen::VectorXd::Ones(points.rows()), 1, 0}}; // throws
+  // Refuses what is wrong with the input here: nothing may be thrown through NLopt, a C library.
+  (void)rom::GaussianProcess(points, values, noise, {Eigen::VectorXd::Ones(points.rows()), 1, 1});
   Search search{points, values, noise, scatter_about_trend(points, values)};
   std::vector<double> low(inputs + 2, std::log(0.05)), high(inputs + 2, std::log(10.0));
   low[inputs] = std::log(1e-2), high[inputs] = std::log(1e3);

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "rom/base/units.hpp"
+#include "fom/levels/emulated_level.hpp"
 #include "training/campaign/run_record_file.hpp"
 
 namespace undula::training {
 namespace {
-
-rom::EmulatorPoint surface_point(const OperatingPoint& at) {
-  return {at.frequency, at.drive == Drive::voltage ? at.voltage : units::length_to_mm(at.stroke),
-          units::pressure_to_mmHg(at.head)};
-}
 
 /// The same process with one more value, the one it expects.
 rom::GaussianProcess believing(const rom::GaussianProcess& process, const Eigen::VectorXd& x) {
@@ -40,7 +35,7 @@ NextPoints next_points(const rom::Emulator& emulator, const Scene& scene,
     const OperatingPoint* worst = nullptr;
     double largest = 0;
     for (const auto& at : candidates) {
-      const double error = rom::emulate(now, surface_point(at)).values.front().error;
+      const double error = rom::emulate(now, emulator_point(at)).values.front().error;
       if (error <= largest || std::ranges::any_of(next.points, [&](const OperatingPoint& other) {
             return same_point(at, other);
           }))
@@ -52,7 +47,7 @@ NextPoints next_points(const rom::Emulator& emulator, const Scene& scene,
     if (k == 0) next.largest_error = largest;
     next.points.push_back(*worst);
     auto& flow = now.quantities.front();
-    flow.process = believing(flow.process, scaled_point(now, surface_point(*worst)));
+    flow.process = believing(flow.process, scaled_point(now, emulator_point(*worst)));
   }
   return next;
 }
