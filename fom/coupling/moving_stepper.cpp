@@ -73,7 +73,7 @@ void MovingStepper<dim>::solve_placed(const Eigen::VectorXd& placement, double t
   else
     stepper_.emplace(disc_, operators_, settings_.scheme, dt, 1, timer_, settings_.newton,
                      settings_.convection, contact_.has_value());
-  if (contact_) stepper_->set_contact(&*contact_, placement);
+  if (contact_) stepper_->set_contact(*contact_, placement);
   stepper_->advance_to(t, state);
   report_.contact_nodes = std::max(report_.contact_nodes, stepper_->contact_nodes());
   report_.solves += stepper_->iterations();

@@ -12,7 +12,7 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
                         operators_.damping * x + operators_.stiffness * state.d[0] +
                         convection_of(disc_, operators_, convecting_, x) +
                         jumps_of(disc_, operators_, convecting_, x);
-  if (contact_) sum += contact_->stiffness * state.d[0];
+  if (adds_contact()) sum += contact_->stiffness * state.d[0];
   sum_over_ranks(operators_.comm, sum);
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
@@ -41,7 +41,7 @@ EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& 
   Eigen::VectorXd sums(8);
   sums << x.dot(physical), x.dot(penalties), x.dot(damping), 0.5 * x.dot(operators_.mass * x),
       0.5 * state.d[0].dot(elastic), carried_power(disc_, operators_, convecting_, x),
-      contact_ ? x.dot(contact_->stiffness * state.d[0]) : 0.0,
+      adds_contact() ? x.dot(contact_->stiffness * state.d[0]) : 0.0,
       (rough_x.dot(operators_.mass * rough_x) + rough_d.dot(operators_.stiffness * rough_d)) /
           ((second ? 4 : 2) * dt_);
   sum_over_ranks(operators_.comm, sums);

@@ -54,23 +54,16 @@ TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<d
       system_(disc, operators, factor_every, timer, convection.tolerance > 0 || contact) {}
 
 template <int dim>
-void TimeStepper<dim>::set_contact(const WallContact<dim>* contact, const Eigen::VectorXd& placement) {
-  contact_with_ = contact;
-  contact_.reset();
-  if (contact)
-    linearise_contact(placement);
-  else
-    system_.add_stiffness(nullptr);
+void TimeStepper<dim>::set_contact(const WallContact<dim>& contact, const Eigen::VectorXd& placement) {
+  contact_with_ = &contact;
+  linearise_contact(placement);
 }
 
 template <int dim>
 void TimeStepper<dim>::linearise_contact(const Eigen::VectorXd& placement) {
   contact_ = contact_force(*contact_with_, disc_, placement);
   contact_about_ = placement;
-  contact_stiffness_ = contact_->stiffness;
-  // The film is known to every rank and enters once.
-  if (operators_.rank != 0) contact_->stiffness.setZero();
-  system_.add_stiffness(&contact_->stiffness);
+  system_.add_stiffness(adds_contact() ? &contact_->stiffness : nullptr);
 }
 
 template <int dim>
@@ -193,7 +186,7 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
       system_.assemble(factors, &convecting_);
       side = right;
       if (!contact_) return;
-      Eigen::VectorXd film = contact_->load + contact_stiffness_ * (history_d / alpha[0]);
+      Eigen::VectorXd film = contact_->load + contact_->stiffness * (history_d / alpha[0]);
       constrain_rows(disc_, film);
       side += film;
     };

@@ -40,9 +40,9 @@ public:
   /// The same to time t, which has to be one dt later; for steps that are parts of a regular one.
   void advance_to(double t, State& state);
 
-  /// Contact in the following steps, first linearised about `placement` (solids' unknowns); null: none. It
-  /// has to outlive its use. The operators stay as they are. Collective.
-  void set_contact(const WallContact<dim>* contact, const Eigen::VectorXd& placement);
+  /// Contact in the following steps, first linearised about `placement` (solids' unknowns). It has
+  /// to outlive its use. The operators stay as they are. Collective.
+  void set_contact(const WallContact<dim>& contact, const Eigen::VectorXd& placement);
 
   /// What is left over of every equation of that step: zero but in the rows of imposed unknowns, where it is
   /// the generalised force that imposes them. Natural order, complete on every rank. Collective.
@@ -76,6 +76,7 @@ private:
   NewtonSettings newton_;
   Eigen::VectorXd loads(double t) const;
   void linearise_contact(const Eigen::VectorXd& placement);
+  bool adds_contact() const { return contact_ && operators_.rank == 0; }
   /// What of convection and contact does not hold for the answer `x`, which displaces the solids to `d`.
   std::string missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d);
   double distance_by_energy(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
@@ -86,8 +87,7 @@ private:
   LinearSystem<dim> system_;
 
   const WallContact<dim>* contact_with_ = nullptr;
-  std::optional<ContactForce> contact_; ///< its stiffness is part of the system's
-  SparseMatrix contact_stiffness_;      ///< its stiffness on every rank
+  std::optional<ContactForce> contact_; ///< the same on every rank; the first adds it to sums over ranks
   Eigen::VectorXd contact_about_;       ///< where it is linearised, solids' unknowns
   Eigen::VectorXd contact_next_;        ///< where it is linearised next
   std::array<double, 3> alpha_{};       ///< of the last step
