@@ -49,6 +49,10 @@ void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, cons
   std::unique_ptr<FiniteElementLevel> projected;
   PhaseTimer timer;
   const auto run_of = [&](const Scene& at_point) {
+    if (scene.coupling == Coupling::mapped && scene.space != Space::thin_gap) {
+      FiniteElementLevel level(at_point, group, timer);
+      return record_run(level, at_point, after_step);
+    }
     if (scene.training.model == ModelKind::emulator) {
       // Weights may be derived from frequency and stroke: the level is the one that `hq` prepares there.
       const auto level = prepare_level(at_point, group, timer);

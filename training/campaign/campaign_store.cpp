@@ -81,7 +81,9 @@ void check_stamp(const std::filesystem::path& path, const SceneStamp& stamp) {
 SceneStamp stamp_campaign(const Scene& scene) {
   Scene common = scene;
   common.operating_point = {scene.training.frequency_low, scene.training.stroke_low, scene.training.head_low};
-  const bool emulated = scene.training.model == ModelKind::emulator;
+  // What the runs of a moving domain record serves models of both kinds.
+  const bool mapped = scene.space != Space::thin_gap && scene.coupling == Coupling::mapped;
+  const bool emulated = scene.training.model == ModelKind::emulator || mapped;
   if (emulated) {
     common.operating_point.drive = scene.operating_point.drive;
     common.operating_point.stroke_scale = scene.operating_point.stroke_scale;

@@ -19,27 +19,35 @@ struct Sampler {
     State copy;
     copy.x[0] = state.x[0];
     copy.d[0] = state.d[0];
+    copy.map[0] = state.map[0];
     kept.emplace_back(state.time, std::move(copy));
     if (kept.size() > capacity) kept.pop_front();
   }
 
   void write(const Discretisation<2>& disc, RunRecord& record) const {
-    const auto store = [&](const char* field, const char* unit, const std::vector<int>& unknowns,
-                           bool displacement) {
+    const auto store = [&](const char* field, const char* unit, auto&& values_of) {
       Snapshots snapshots;
       snapshots.unit = unit;
-      snapshots.values.resize(static_cast<Eigen::Index>(unknowns.size()),
-                              static_cast<Eigen::Index>(kept.size()));
       for (std::size_t k = 0; k < kept.size(); ++k) {
-        const State& state = kept[k].second;
-        const Eigen::VectorXd& levels = displacement ? state.d[0] : state.x[0];
-        snapshots.values.col(static_cast<Eigen::Index>(k)) = levels(unknowns);
+        const Eigen::VectorXd values = values_of(kept[k].second);
+        if (k == 0) snapshots.values.resize(values.size(), static_cast<Eigen::Index>(kept.size()));
+        snapshots.values.col(static_cast<Eigen::Index>(k)) = values;
       }
       record.snapshots.emplace(field, std::move(snapshots));
     };
-    store(velocity_field, "cm/s", velocity_unknowns(disc), false);
-    store(pressure_field, "dyn/cm^2", pressure_unknowns(disc), false);
-    store(displacement_field, "cm", displacement_unknowns(disc), true);
+    const auto velocities = velocity_unknowns(disc), pressures = pressure_unknowns(disc),
+               displacements = displacement_unknowns(disc);
+    store(velocity_field, "cm/s", [&](const State& state) { return state.x[0](velocities); });
+    store(pressure_field, "dyn/cm^2", [&](const State& state) { return state.x[0](pressures); });
+    store(displacement_field, "cm", [&](const State& state) { return state.d[0](displacements); });
+    if (kept.empty() || kept.front().second.map[0].size() == 0) return finish(record);
+    // Of a moving domain also what its projection is made of.
+    store(solid_velocity_field, "cm/s", [&](const State& state) { return state.x[0](displacements); });
+    store(map_field, "cm", [&](const State& state) { return state.map[0]; });
+    finish(record);
+  }
+
+  void finish(RunRecord& record) const {
     for (const auto& [time, state] : kept) record.times.push_back(time);
   }
 };
@@ -94,9 +102,9 @@ RunRecord record_run(FiniteElementLevel& level, const Scene& scene, const AfterS
       static_cast<std::size_t>(plan.snapshots_per_period) * static_cast<std::size_t>(plan.sampled_periods),
       {}};
   const MPI_Comm comm = level.prepared().operators.comm;
-  // A projection needs the periodic state, and not its mean flow alone.
+  // A projection of a fixed domain needs the periodic state, and not its mean flow alone.
   Scene to_the_end = scene;
-  to_the_end.time.flow_error = 0;
+  if (scene.coupling == Coupling::fixed) to_the_end.time.flow_error = 0;
   State state = level.initial_state();
   PeriodicRun run = march_until_periodic(level, to_the_end, state, [&](const State& now, const Observation&) {
     if (after_step) after_step(comm);
