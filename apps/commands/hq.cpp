@@ -21,6 +21,7 @@
 #include "apps/input/head_list.hpp"
 #include "apps/input/level_source.hpp"
 #include "apps/input/target_curves.hpp"
+#include "apps/input/tiers.hpp"
 #include "apps/mpi_session.hpp"
 #include "apps/output/curve_progress.hpp"
 #include "apps/output/curve_report.hpp"
@@ -52,8 +53,11 @@ struct HqCommandOptions {
   std::string beside;
   std::string picture;
   bool band = false;
-  std::vector<std::string> given; ///< measured curves that narrow the band
-  int draws = 0;                  ///< with them: computed at random inputs, to try the linear law
+  std::vector<std::string> given;  ///< measured curves that narrow the band
+  int draws = 0;                   ///< with them: computed at random inputs, to try the linear law
+  std::optional<double> tolerance; ///< l/min
+  std::vector<std::string> then;
+  std::string campaign;
   bool json = false;
   std::vector<std::string> overrides;
   std::vector<std::string> petsc;
@@ -79,7 +83,8 @@ LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, boo
     return beside;
   }
   // A projected model knows no scale of the stroke.
-  const bool projected = !is_scene(options.beside) && !rom::holds_emulator(options.beside);
+  const bool projected = !is_scene(options.beside) && !rom::holds_emulator(options.beside) &&
+                         !rom::holds_moving_model(options.beside);
   const double stroke = units::length_to_mm(point.stroke) * (projected ? point.stroke_scale : 1);
   return read_level_source(options.beside, {}, point.frequency, stroke);
 }
@@ -129,6 +134,7 @@ struct Question {
   std::vector<RecordedCurve> recorded;
   std::vector<TargetCurve> given;
   std::vector<LevelSource> other; ///< by curve; empty: nothing beside
+  TierSources tiers;              ///< of --tolerance
 };
 
 /// Measured data of every curve: those of its voltage. A single curve takes a single file, with a warning
@@ -167,9 +173,11 @@ Question read_question(const HqCommandOptions& options) {
       options.voltages.empty()
           ? std::vector<double>{}
           : parse_numbers(options.voltages, {"voltages", "V", "40,45 or 36:48:4", "--voltage"});
-  question.source =
-      read_level_source(options.file, options.overrides, options.frequency_Hz, options.stroke_mm,
-                        voltages.empty() ? std::nullopt : std::optional(voltages.front()));
+  // A model has no keys: they are those of the scenes behind it.
+  const bool of_scenes_behind = !is_scene(options.file) && std::ranges::any_of(options.then, is_scene);
+  question.source = read_level_source(
+      options.file, of_scenes_behind ? std::vector<std::string>{} : options.overrides, options.frequency_Hz,
+      options.stroke_mm, voltages.empty() ? std::nullopt : std::optional(voltages.front()));
   question.scenes = {question.source.scene};
   for (std::size_t k = 1; k < voltages.size(); ++k) {
     // An emulator's scene is no whole one: it is made again instead of changed.
@@ -216,6 +224,11 @@ Question read_question(const HqCommandOptions& options) {
     question.recorded.push_back(
         kept_runs(*question.source.model, scene.operating_point.frequency, *options.stroke_mm));
   }
+  if (options.tolerance) {
+    question.tiers =
+        read_tiers(question.source, options.then,
+                   of_scenes_behind ? options.overrides : std::vector<std::string>{}, options.campaign);
+  }
   if (!options.beside.empty()) {
     for (std::size_t k = 0; k < question.scenes.size(); ++k) {
       question.other.push_back(read_beside(options, question.scenes[k], question.source.emulator.has_value(),
@@ -223,6 +236,32 @@ Question read_question(const HqCommandOptions& options) {
     }
   }
   return question;
+}
+
+/// Why a tier answered that is not the first, and what may be learnt from its runs.
+void tell_tiers(const HqCommandOptions& options, const Question& question,
+                std::span<const std::vector<CurvePoint>> curves) {
+  bool recorded = false;
+  for (const auto& curve : curves) {
+    for (const CurvePoint& point : curve) {
+      const bool met = point.error_l_per_min <= *options.tolerance;
+      if (!met || point.tier != tier_name(question.source)) {
+        spdlog::log(met ? spdlog::level::info : spdlog::level::warn, "{} mmHg: {} ({})",
+                    plain_number(point.head_mmHg), point.tier, point.why);
+      }
+      recorded = recorded || (!options.campaign.empty() && point.tier.starts_with("scene "));
+    }
+  }
+  if (!recorded) {
+    return;
+  }
+  for (const LevelSource& source : question.tiers.sources) {
+    if (!source.is_model()) {
+      spdlog::info(
+          "the runs are in {}; to learn from them: undula train {} --campaign {} --with-recorded --output {}",
+          options.campaign, source.file, options.campaign, options.file);
+    }
+  }
 }
 
 bool has_flow(std::span<const CurvePoint> points) {
@@ -237,7 +276,14 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
 
   // 2. The periodic state at every head, on a level prepared once.
   PhaseTimer timer;
-  const auto level = prepare(question.source, comm, timer);
+  Tiers tiers;
+  std::unique_ptr<Level> alone;
+  if (options.tolerance) {
+    prepare_tiers(question.tiers, *options.tolerance, comm, timer, tiers);
+  } else {
+    alone = prepare(question.source, comm, timer);
+  }
+  Level* const level = alone ? alone.get() : tiers.level.get();
   std::vector<std::vector<CurvePoint>> curves;
   for (const Scene& scene : question.scenes) {
     curves.push_back(curve_with_progress("hq", *level, scene, question.heads, comm));
@@ -296,6 +342,9 @@ void hq(const HqCommandOptions& options, MPI_Comm comm) {
     if (!options.picture.empty()) {
       plot_curve_reports(options.picture, reports);
     }
+    if (options.tolerance) {
+      tell_tiers(options, question, curves);
+    }
   });
 }
 
@@ -339,6 +388,24 @@ void add_hq_command(CLI::App& app) {
       ->add_option("--draws", options->draws,
                    "with --given: so many curves at random inputs, to see whether the band holds them")
       ->check(CLI::Range(1, 100000));
+  CLI::Option* tolerance =
+      command
+          ->add_option(
+              "--tolerance", options->tolerance,
+              "answer every head by the first of the model and the files of --then whose error is within "
+              "this, l/min")
+          ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--then", options->then,
+          "with --tolerance: a model or a scene to ask where the ones before are not sure enough, may be "
+          "repeated")
+      ->needs(tolerance)
+      ->allow_extra_args(false);
+  command
+      ->add_option("--campaign", options->campaign,
+                   "with --then SCENE: folder that its runs are recorded in, and read from")
+      ->needs(tolerance);
   command->add_flag("--json", options->json, "print JSON");
   command
       ->add_option("--set", options->overrides,
@@ -347,8 +414,12 @@ void add_hq_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("petsc", options->petsc, "options for PETSc, after -- (scenes)");
   command->callback([options] {
-    const bool models_alone =
-        !is_scene(options->file) && (options->beside.empty() || !is_scene(options->beside));
+    const auto marches = [](const std::string& file) {
+      return is_scene(file) || rom::holds_moving_model(file);
+    };
+    const bool models_alone = !marches(options->file) &&
+                              (options->beside.empty() || !marches(options->beside)) &&
+                              std::ranges::none_of(options->then, marches);
     (models_alone ? run_alone : run_parallel)(options->petsc, [&](MPI_Comm comm) { hq(*options, comm); });
   });
 }

@@ -14,6 +14,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/mpi_session.hpp"
 #include "apps/output/emulator_report.hpp"
+#include "apps/output/moving_model_report.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
 #include "apps/stop_signal.hpp"
@@ -28,8 +29,10 @@
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
+#include "training/campaign/run_record_file.hpp"
 #include "training/emulation/build_emulator.hpp"
 #include "training/emulation/next_points.hpp"
+#include "training/moving_domain/build_moving_model.hpp"
 #include "training/reduction/build_model.hpp"
 #include "training/sampling/trainable_scene.hpp"
 
@@ -43,6 +46,7 @@ struct TrainOptions {
   std::string campaign;
   std::optional<double> tolerance; ///< l/min
   int most_runs = 100;
+  bool with_recorded = false;
   bool force = false;
   bool json = false;
   std::vector<std::string> petsc;
@@ -129,8 +133,9 @@ void check_target(const std::string& file, const Scene& scene, bool force) {
   }
   std::string seen = "a file that is no reduced model";
   try {
-    const auto provenance =
-        rom::holds_emulator(file) ? rom::load_emulator(file).provenance : rom::load_model(file).provenance;
+    const auto provenance = rom::holds_emulator(file)       ? rom::load_emulator(file).provenance
+                            : rom::holds_moving_model(file) ? rom::load_moving_model(file).provenance
+                                                            : rom::load_model(file).provenance;
     const auto entry = [&](const char* name) {
       const auto found = provenance.find(name);
       return found == provenance.end() ? std::string() : found->second;
@@ -253,6 +258,22 @@ void add_runs(const TrainOptions& options, const Scene& scene, const CampaignSto
   }
 }
 
+/// Runs in the box that are recorded besides the plan, as those of `hq --tolerance`.
+std::vector<OperatingPoint> recorded_besides(const Scene& scene, const CampaignStore& store,
+                                             const SamplingPlan& plan) {
+  std::vector<OperatingPoint> besides;
+  const auto planned = [&](const OperatingPoint& point) {
+    const auto same = [&](const OperatingPoint& other) { return same_point(point, other); };
+    return std::ranges::any_of(plan.training, same) || std::ranges::any_of(plan.held_out, same);
+  };
+  for (const OperatingPoint& point : store.recorded_points()) {
+    if (point.drive == scene.operating_point.drive && is_inside(scene.training, point) && !planned(point)) {
+      besides.push_back(point);
+    }
+  }
+  return besides;
+}
+
 void train(const TrainOptions& options, MPI_Comm comm) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
@@ -273,12 +294,22 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     throw InputError("a projected model does not choose its runs", "--tolerance",
                      "training.model = \"emulator\"", scene.file.string());
   }
-  SamplingPlan plan = plan_samples(scene.training, emulated ? scene.operating_point : OperatingPoint{});
-  std::vector<OperatingPoint> points = plan.training;
-  points.insert(points.end(), plan.held_out.begin(), plan.held_out.end());
+  const bool moving = !emulated && scene.coupling == Coupling::mapped;
+  SamplingPlan plan =
+      plan_samples(scene.training, emulated || moving ? scene.operating_point : OperatingPoint{});
   std::optional<CampaignStore> store;
+  std::vector<OperatingPoint> besides;
   on_root(comm, [&] {
     store.emplace(folder, stamp_campaign(scene));
+    if (options.with_recorded) {
+      besides = recorded_besides(scene, *store, plan);
+    }
+  });
+  besides = shared(besides, scene, comm);
+  plan.training.insert(plan.training.end(), besides.begin(), besides.end());
+  std::vector<OperatingPoint> points = plan.training;
+  points.insert(points.end(), plan.held_out.begin(), plan.held_out.end());
+  on_root(comm, [&] {
     for (const std::string& message : store->status(points).damaged) {
       spdlog::warn("{}", message);
     }
@@ -315,6 +346,16 @@ void train(const TrainOptions& options, MPI_Comm comm) {
       return;
     }
     PhaseTimer timer;
+    if (moving) {
+      BuiltMovingModel built = build_moving_model(scene, plan, *store, timer);
+      built.model.provenance = origin;
+      rom::save_moving_model(built.model, output);
+      for (const std::string& message : built.left_out) {
+        spdlog::warn("left out, failed: {}", message);
+      }
+      std::cout << (options.json ? moving_model_json(built, output) : moving_model_text(built, output));
+      return;
+    }
     TrainedModel trained = build_model(scene, plan, *store, timer);
     trained.model.provenance = origin;
     rom::save_model(trained.model, output);
@@ -353,6 +394,9 @@ void add_train_command(CLI::App& app) {
   command->add_option("--runs", options->most_runs, "most runs that --tolerance may come to; default 100")
       ->check(CLI::Range(1, 100000))
       ->needs("--tolerance");
+  command->add_flag(
+      "--with-recorded", options->with_recorded,
+      "train also with the runs of the folder that are not in the plan, as those of hq --tolerance");
   command->add_flag("--force", options->force, "replace a model of another scene in OUTPUT");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("petsc", options->petsc, "options for PETSc, after --");

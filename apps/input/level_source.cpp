@@ -10,6 +10,7 @@
 
 #include "apps/input/reduced_model.hpp"
 #include "fom/levels/emulated_level.hpp"
+#include "fom/levels/moving_reduced_level.hpp"
 #include "fom/levels/reduced_level.hpp"
 #include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/common_problem.hpp"
@@ -36,6 +37,20 @@ LevelSource read_model_source(const std::string& file, const std::vector<std::st
     source.file = file;
     source.emulator = rom::load_emulator(file);
     source.scene = scene_of_emulator(*source.emulator, file, *frequency_Hz, stroke_mm, voltage_V);
+    return source;
+  }
+  if (rom::holds_moving_model(file)) {
+    if (!frequency_Hz) {
+      throw CLI::RequiredError("--frequency");
+    }
+    if (stroke_mm) {
+      throw InputError("this model is driven by a voltage", "--stroke " + exact_number(*stroke_mm),
+                       "--voltage", file);
+    }
+    LevelSource source;
+    source.file = file;
+    source.moving = rom::load_moving_model(file);
+    source.scene = scene_of_moving_model(*source.moving, file, *frequency_Hz, voltage_V);
     return source;
   }
   if (voltage_V) {
@@ -101,6 +116,9 @@ std::unique_ptr<Level> prepare(const LevelSource& source, MPI_Comm comm, PhaseTi
   }
   if (source.emulator) {
     return std::make_unique<EmulatedLevel>(*source.emulator);
+  }
+  if (source.moving) {
+    return std::make_unique<MovingReducedLevel>(*source.moving, source.file, comm, timer);
   }
   return prepare_level(source.scene, comm, timer);
 }

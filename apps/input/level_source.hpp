@@ -12,17 +12,19 @@
 #include "fom/levels/level.hpp"
 #include "rom/emulator/emulator.hpp"
 #include "rom/fixed_domain/model.hpp"
+#include "rom/moving_domain/moving_model.hpp"
 
 namespace undula::apps {
 
 /// A file and what is stated beside it on the command line.
 struct LevelSource {
   std::string file;
-  Scene scene;                           ///< of a model: scene_of_model, scene_of_emulator
-  std::optional<rom::Model> model;       ///< nothing for a scene
-  std::optional<rom::Emulator> emulator; ///< the same
+  Scene scene;                            ///< of a model: scene_of_model, scene_of_emulator
+  std::optional<rom::Model> model;        ///< nothing for a scene
+  std::optional<rom::Emulator> emulator;  ///< the same
+  std::optional<rom::MovingModel> moving; ///< the same
 
-  [[nodiscard]] bool is_model() const { return model || emulator; }
+  [[nodiscard]] bool is_model() const { return model || emulator || moving; }
 };
 
 /// Whether a file is read as a scene, by its ending (.toml in any case).

@@ -103,6 +103,11 @@ std::string curve_table(const CurveReport& report) {
   if (boxed) {
     header.emplace_back("in training box");
   }
+  const bool tiers =
+      std::ranges::any_of(report.points, [](const auto& point) { return !point.tier.empty(); });
+  if (tiers) {
+    header.emplace_back("answered by");
+  }
   header.insert(header.end(), {"periods", "periodic", "seconds"});
   if (report.measured != nullptr) {
     header.emplace_back("measured, fit (l/min)");
@@ -126,7 +131,10 @@ std::string curve_table(const CurveReport& report) {
       row.push_back(number_or(point.*column.value, column.decimals, column.otherwise));
     }
     if (boxed) {
-      row.emplace_back(point.inside_training_box.value_or(false) ? "yes" : "no");
+      row.emplace_back(!point.inside_training_box ? "-" : *point.inside_training_box ? "yes" : "no");
+    }
+    if (tiers) {
+      row.push_back(point.tier);
     }
     row.insert(row.end(), {point.periods == 0 ? "-" : std::to_string(point.periods),
                            point.periodic ? "yes" : "no", number_or(total_seconds(point), 3, "-")});
@@ -216,6 +224,10 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
   if (std::isfinite(point.film_unresolved_percent)) {
     entry["film"] = {{"elements_min", point.film_elements_min},
                      {"unresolved_percent", point.film_unresolved_percent}};
+  }
+  if (!point.tier.empty()) {
+    entry["tier"] = point.tier;
+    entry["why"] = point.why;
   }
   entry["periods"] = point.periods;
   entry["periodic"] = point.periodic;

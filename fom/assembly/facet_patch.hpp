@@ -18,7 +18,9 @@ struct FacetPatch {
   Point<dim> normal;                                 ///< unit
   Point<dim> centre = Point<dim>::Zero();            ///< of the facet, cm
   int opposite = 0;                                  ///< vertex of the first part off the facet
-  double area = 0;  ///< of the whole facet, also where a solid covers a piece of it, cm^(dim-1)
+  /// Of the whole facet, also where a solid covers a piece of it, times the weight of the first part,
+  /// cm^(dim-1).
+  double area = 0;
   double size = 0;  ///< diameter of the larger element at rest, thinned as its height above the facet, cm
   bool cut = false; ///< whether one of the parts is
 };
@@ -53,7 +55,8 @@ FacetPatch<dim> facet_patch(const Discretisation<dim>& disc, const FacetConnecti
     patch.opposite = local;
     const double steepness = geometry.gradients.col(local).norm();
     patch.normal = geometry.gradients.col(local) / steepness;
-    patch.area = dim * cell_measure(disc.cut.mesh, cell) * geometry.volume_ratio * steepness;
+    patch.area =
+        geometry.weight * dim * cell_measure(disc.cut.mesh, cell) * geometry.volume_ratio * steepness;
   }
   // The size that counts is the one across the facet: it changes as the heights of the two elements above it
   // do.

@@ -24,6 +24,7 @@ void add_interface_of(const Discretisation<dim>& disc, const Share& share,
     const auto fluid_nodes = Element::nodes_of(disc, piece.part);
     if (!share.has(disc.velocity_unknown(fluid_nodes[0], 0))) continue;
     const auto& geometry = geometries[piece.part];
+    if (geometry.weight == 0) continue;
     const auto& solid_nodes = disc.solid_spaces[piece.solid].cell_nodes[piece.solid_cell];
     const auto& solid_mesh = disc.placed_solids[piece.solid];
     // Nanson: the moved area vector is cof F N dA. The solid's shape functions live at the place at rest.
@@ -56,7 +57,8 @@ void add_interface_of(const Discretisation<dim>& disc, const Share& share,
       const auto& place = disc.cut.interface_quadrature.points[q];
       const auto lambda = geometry.barycentric(place);
       const double radius = moved ? geometry.corners.row(0).dot(lambda) : place[0];
-      const double w = disc.cut.interface_quadrature.weights[q] * area_ratio * measure(radius);
+      const double w =
+          geometry.weight * disc.cut.interface_quadrature.weights[q] * area_ratio * measure(radius);
       const auto shape = quadratic_values<dim>(barycentric_coordinates(solid_mesh, piece.solid_cell, place));
       const auto value = Element::values(lambda);
       const auto g = Element::gradients(lambda, geometry.gradients);

@@ -51,7 +51,8 @@ std::vector<SolidCell> nonlinear_cells(const Discretisation<dim>& disc, const Sh
     if (!is_nonlinear(disc.problem.solids[s].model)) continue;
     const int solid = static_cast<int>(s);
     for (std::size_t c = 0; c < disc.solid_spaces[s].cell_nodes.size(); ++c)
-      if (share.has(disc.solid_unknown(solid, disc.solid_spaces[s].cell_nodes[c][0], 0)))
+      if (disc.cell_weight(solid, static_cast<int>(c)) > 0 &&
+          share.has(disc.solid_unknown(solid, disc.solid_spaces[s].cell_nodes[c][0], 0)))
         cells.push_back({solid, static_cast<int>(c)});
   }
   return cells;
@@ -79,7 +80,7 @@ CellResponse<dim> cell_response(const Discretisation<dim>& disc, const SolidCell
   const double damping_time = body.properties.damping_time;
   const bool hoop = disc.problem.space == Space::axisymmetric;
   const Measure measure = measure_of(disc.problem.space);
-  const double volume = cell_measure(body.mesh, cell.cell);
+  const double volume = cell_measure(body.mesh, cell.cell), weight = disc.cell_weight(cell.solid, cell.cell);
   const auto barycentric = barycentric_gradients(body.mesh, cell.cell);
 
   CellResponse<dim> response;
@@ -92,7 +93,7 @@ CellResponse<dim> cell_response(const Discretisation<dim>& disc, const SolidCell
     const auto& lambda = rule.barycentric[q];
     Point<dim> x = Point<dim>::Zero();
     for (int a = 0; a <= dim; ++a) x += lambda[a] * body.mesh.points[body.mesh.cells[cell.cell][a]];
-    const double w = rule.weights[q] * volume * measure(x[0]);
+    const double w = weight * rule.weights[q] * volume * measure(x[0]);
     const auto g = quadratic_gradients<dim>(lambda, barycentric);
     const QuadraticValues<dim> shape_by_r =
         hoop ? QuadraticValues<dim>(quadratic_values<dim>(lambda) / x[0]) : QuadraticValues<dim>::Zero();

@@ -11,6 +11,7 @@ namespace undula::fom {
 template <int dim>
 PartGeometry<dim> part_geometry(const Discretisation<dim>& disc, int part) {
   PartGeometry<dim> geometry;
+  geometry.weight = disc.part_weight(part);
   const int cell = disc.cut.parts[part].cell;
   const auto& points = disc.cut.mesh.cells[cell];
   for (int a = 0; a <= dim; ++a) geometry.corners.col(a) = disc.cut.mesh.points[points[a]];

@@ -20,6 +20,7 @@ struct PartGeometry {
   /// J F^-T: takes area vectors at rest to moved ones.
   Eigen::Matrix<double, dim, dim> cofactor = Eigen::Matrix<double, dim, dim>::Identity();
   double volume_ratio = 1; ///< J, without the hoop's stretch
+  double weight = 1;       ///< Discretisation::part_weight
 
   /// Barycentric coordinates of the material point at `x`, a place at rest.
   Eigen::Matrix<double, dim + 1, 1> barycentric(const Point<dim>& x) const {

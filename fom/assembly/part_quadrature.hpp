@@ -27,7 +27,7 @@ void for_each_place(const Discretisation<dim>& disc, int part, const PartGeometr
 }
 
 /// Calls f(lambda, x, weight) over part `part` where the map puts it: barycentric coordinates, position (cm)
-/// and weight with the measure (2 pi r in axisymmetric space).
+/// and weight with the measure (2 pi r in axisymmetric space) and that of the part.
 template <int dim, class F>
 void for_each_point(const Discretisation<dim>& disc, int part, const PartGeometry<dim>& geometry,
                     const ReferenceRule<dim>& rule, F&& f) {
@@ -35,7 +35,7 @@ void for_each_point(const Discretisation<dim>& disc, int part, const PartGeometr
   const bool moved = !disc.map.is_identity();
   for_each_place(disc, part, geometry, rule, [&](const auto& lambda, const Point<dim>& place, double w) {
     const Point<dim> x = moved ? Point<dim>(geometry.corners * lambda) : place;
-    f(lambda, x, w * geometry.volume_ratio * measure(x[0]));
+    f(lambda, x, geometry.weight * w * geometry.volume_ratio * measure(x[0]));
   });
 }
 

@@ -21,6 +21,7 @@ void for_each_patch(const Discretisation<dim>& disc, const Share& share,
   for (const auto& connection : disc.cut.connections) {
     const int first = connection.part[0], second = connection.part[1];
     if (!share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[first][0], 0))) continue;
+    if (geometries[first].weight == 0) continue;
     const auto patch = facet_patch(disc, connection, geometries[first], geometries[second]);
     f(connection, patch, patch.area * measure(patch.centre[0])); // r is linear: its mean is at the centre
   }

@@ -56,7 +56,7 @@ void visit_velocity_jumps(const Discretisation<dim>& disc, const VelocityJumps<d
                           const Eigen::VectorXd& b, F&& f) {
   const bool moved = !disc.map.is_identity();
   for (const auto& jump : jumps.linear) {
-    Eigen::Matrix<double, dim, dim + 1> domain;
+    Eigen::Matrix<double, dim, dim + 1> domain = Eigen::Matrix<double, dim, dim + 1>::Zero();
     if (moved) domain = domain_velocity(disc, jump.part);
     double speed = 0;
     for (int a = 0; a <= dim; ++a) {
@@ -75,7 +75,7 @@ void visit_velocity_jumps(const Discretisation<dim>& disc, const VelocityJumps<d
   using Element = VelocityElement<dim, 2>;
   constexpr int nodes = QuadraticPatch<dim>::nodes_of_both;
   for (const auto& jump : jumps.quadratic) {
-    Eigen::Matrix<double, dim, dim + 1> domain;
+    Eigen::Matrix<double, dim, dim + 1> domain = Eigen::Matrix<double, dim, dim + 1>::Zero();
     if (moved) domain = domain_velocity(disc, jump.part);
     const auto velocity = Element::coefficients(disc, jump.part, b);
     Eigen::Matrix<double, nodes, nodes> local = Eigen::Matrix<double, nodes, nodes>::Zero();

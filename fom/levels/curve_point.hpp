@@ -44,6 +44,8 @@ struct CurvePoint {
   int periods = 0; ///< computed at this head
   bool periodic = false;
   std::string reason;                    ///< why it is not, else empty
+  std::string tier;                      ///< of several levels the one that answered; empty: there is one alone
+  std::string why;                       ///< what each of them knew of its error
   std::map<std::string, double> seconds; ///< by phase, "total" among them
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "fom/coupling/moving_stepper.hpp"
 #include "fom/output/visual_mesh.hpp"
@@ -67,6 +68,11 @@ FiniteElementLevel::FiniteElementLevel(const Scene& scene, MPI_Comm comm, PhaseT
       coupling_(scene.coupling),
       unknowns_(prepared_->disc.unknowns()),
       rest_(fom::initial_state(prepared_->disc)) {}
+
+void FiniteElementLevel::reduce(std::shared_ptr<const ReducedSpace> space, PhaseTimer& timer) {
+  prepared_->disc.reduced = std::move(space);
+  prepared_->operators = build_operators(prepared_->disc, prepared_->operators.comm, timer);
+}
 
 std::string FiniteElementLevel::name() const {
   return std::string("full order, ") + coupling_name(coupling_);

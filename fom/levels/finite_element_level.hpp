@@ -26,6 +26,9 @@ public:
 
   const PreparedScene& prepared() const { return *prepared_; }
 
+  /// From now on every march seeks its unknowns in `space`. Phase "assemble". Collective.
+  void reduce(std::shared_ptr<const ReducedSpace> space, PhaseTimer& timer);
+
 private:
   std::unique_ptr<PreparedScene> prepared_;
   Coupling coupling_;

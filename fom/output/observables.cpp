@@ -162,24 +162,38 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   }
   if (const auto inlet = operators.openings.find(inlet_name); inlet != operators.openings.end())
     seen.inflow = -inlet->second.dot(x);
-  const Eigen::VectorXd residual = stepper.residual(state);
-  seen.general = observe_general(plan.general, disc, operators, residual, state);
-  seen.energy = stepper.energy(state, residual);
+  // What sums over all parts and cells is not known of a cubature.
+  const bool whole = !disc.is_sampled();
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd residual;
+  if (whole) {
+    residual = stepper.residual(state);
+    seen.general = observe_general(plan.general, disc, operators, residual, state);
+    seen.energy = stepper.energy(state, residual);
+  } else {
+    seen.energy = unknown_energy;
+  }
   for (int node = 0; node < disc.velocity_nodes(); ++node)
     seen.speed_max = std::max(seen.speed_max, x.template segment<dim>(disc.velocity_unknown(node, 0)).norm());
-  auto shear = wall_shear(disc, operators, plan, x);
-  seen.wall_shear_max = shear.maximum;
-  seen.wall_shear_mean = shear.mean;
-  seen.wall_shear = std::move(shear.by_wall);
-  if (plan.blood) seen.blood = blood_stress(disc, *plan.blood, x);
+  if (whole) {
+    auto shear = wall_shear(disc, operators, plan, x);
+    seen.wall_shear_max = shear.maximum;
+    seen.wall_shear_mean = shear.mean;
+    seen.wall_shear = std::move(shear.by_wall);
+  } else {
+    seen.wall_shear_max = seen.wall_shear_mean = unknown;
+    seen.wall_shear.assign(plan.walls.size(), unknown);
+  }
+  if (plan.blood && whole) seen.blood = blood_stress(disc, *plan.blood, x);
   const auto least = clearance(plan, state.d[0], disc.solid_unknowns());
   seen.clearance_min = least.smallest;
   if (disc.interface_moves) seen.film_elements = least.elements;
   if (!plan.probes.radius.empty()) {
     const Eigen::VectorXd axial = plan.probes.axial_displacement(state.d[0]);
     seen.tip_displacement = axial[0];
-    double force = 0;
-    for (const auto& node : disc.imposed) force += residual[node.unknown + dim - 1];
+    double force = whole ? 0 : unknown;
+    if (whole)
+      for (const auto& node : disc.imposed) force += residual[node.unknown + dim - 1];
     const auto& holder = disc.problem.holder;
     seen.holder =
         observe_holder(holder ? &holder->actuator : nullptr, holder ? holder->voltage(state.time) : 0,

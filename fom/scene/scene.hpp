@@ -105,6 +105,7 @@ struct TrainingPlan {
   int sampled_periods = 0;                                            ///< the last ones of each run
   int velocity_modes = 0, pressure_modes = 0, displacement_modes = 0; ///< 0: by energy_tolerance
   double energy_tolerance = 0;                                        ///< 1 - captured energy
+  double cubature_error = 0;     ///< part of the forces that cubature may miss
   double periodic_tolerance = 0; ///< change of the velocity over a period at which a run counts as periodic
   PressureStability pressure_stability = PressureStability::projected_stabilisation;
   int ranks_per_run = 1;

@@ -518,6 +518,10 @@ std::vector<SceneKey> training_keys() {
            {}, "projected-stabilisation")},
       bound("training.energy_tolerance", "", "energy that the modes may miss, as a part of the whole",
             FIELD(training.energy_tolerance), 1, between(0, 1), 1e-6),
+      bound("training.cubature_error", "",
+            "of a moving domain: part of the projected forces that the weighted sums over a few elements may "
+            "miss; 0: sums over all elements",
+            FIELD(training.cubature_error), 1, from_to(0, 1), 0.01),
       bound("training.periodic_tolerance", "",
             "change of the velocity over a period at which a run counts as periodic",
             FIELD(training.periodic_tolerance), 1, between(0, 1), 2e-3),

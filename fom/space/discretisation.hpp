@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "fom/fom.hpp"
 #include "fom/problem/problem.hpp"
 #include "fom/space/domain_map.hpp"
+#include "fom/space/reduced_space.hpp"
 #include "fom/space/solid_space.hpp"
 #include "geometry/cut/cut.hpp"
 
@@ -58,7 +60,24 @@ struct Discretisation {
   /// Unknowns of a driven holder (FsiProblem::holder), constrained to have one value. The row of the first
   /// holds the sum of their equations and that of the holder. Empty: no holder is driven.
   std::vector<int> joined;
+  std::shared_ptr<const ReducedSpace> reduced; ///< null: all unknowns, all parts and cells
 
+  /// Of a part, and of a cell of all solids, in sums over them.
+  double part_weight(int part) const {
+    return reduced && !reduced->part_weights.empty() ? reduced->part_weights[static_cast<std::size_t>(part)]
+                                                     : 1.0;
+  }
+  double cell_weight(int solid, int cell) const {
+    if (!reduced || reduced->cell_weights.empty()) return 1.0;
+    auto place = static_cast<std::size_t>(cell);
+    for (int before = 0; before < solid; ++before)
+      place += solid_spaces[static_cast<std::size_t>(before)].cell_nodes.size();
+    return reduced->cell_weights[place];
+  }
+  /// Whether sums over parts or cells are those of a cubature: energies and residuals are unknown then.
+  bool is_sampled() const {
+    return reduced && !(reduced->part_weights.empty() && reduced->cell_weights.empty());
+  }
   int fluid_unknowns() const { return solid_offset.front(); }
   int unknowns() const { return solid_offset.back(); }
   int solid_unknowns() const { return unknowns() - fluid_unknowns(); }

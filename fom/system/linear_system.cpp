@@ -125,6 +125,14 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
     for (const int column : unknowns)
       for (const int row : unknowns) tangent_places_.push_back(place_of(row, column));
   }
+  if (disc.reduced && disc.reduced->basis.cols() > 0) {
+    reduced_.emplace(disc.reduced->basis, row_begin_, columns_, operators.comm);
+    if (!disc.joined.empty() && operators.ownership.owner[disc.joined.front()] == rank) {
+      holder_place_ = 0;
+      holder_entries_.assign(1, 0.0);
+    }
+    return;
+  }
   // Every entry once: PETSc sorts and adds up what it is given, which costs more than assembling it.
   std::vector<PetscInt> rows(columns_.size()), columns(columns_.size());
   const int first = disc.joined.empty() ? -1 : disc.joined.front();
@@ -229,6 +237,10 @@ void LinearSystem<dim>::assemble(const SystemFactors& factors, const Eigen::Vect
 
 template <int dim>
 void LinearSystem<dim>::write(std::vector<double>& values) {
+  if (reduced_) {
+    values_ = values;
+    return;
+  }
   for (const int place : identity_places_) values[place] = 1.0;
   values.resize(columns_.size());
   values.insert(values.end(), holder_entries_.begin(), holder_entries_.end());
@@ -318,6 +330,15 @@ void LinearSystem<dim>::check_residual(int step) {
 template <int dim>
 Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, int iteration,
                                          const Eigen::VectorXd* guess, double tolerance) {
+  if (reduced_) {
+    const auto scope = timer_.measure("solve");
+    Eigen::VectorXd x = reduced_->solve(values_, rhs, holder_place_ >= 0 ? disc_.joined.front() : -1,
+                                        holder_place_ >= 0 ? holder_entries_.front() : 0.0);
+    if (!x.allFinite())
+      throw NumericsError("the projected system has no finite solution", "step " + std::to_string(step),
+                          "a smaller time step, or a model with more modes");
+    return x;
+  }
   const auto& index = operators_.ownership.petsc_index;
   fill(rhs_.get(), rhs);
   bool reuse = false;

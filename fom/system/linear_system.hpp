@@ -5,6 +5,7 @@
 
 #include "fom/system/handles.hpp"
 #include "fom/system/operators.hpp"
+#include "fom/system/reduced_solver.hpp"
 
 namespace undula::fom {
 
@@ -22,7 +23,8 @@ struct SystemFactors {
 };
 
 /// Rows of constrained unknowns are replaced by the identity, but for those of a driven holder: they are
-/// summed up in the row of the first, and the rows of the others say that they have its value. Options of the
+/// summed up in the row of the first, and the rows of the others say that they have its value. With a reduced
+/// space (Discretisation::reduced) every solution is that of the projected system. Options of the
 /// solver are open to the user under the prefix `-fsi_`. The symbolic factorisation is made once.
 template <int dim>
 class LinearSystem {
@@ -95,6 +97,8 @@ private:
   const SparseMatrix* added_stiffness_ = nullptr;
   std::optional<SystemFactors> factors_; ///< of `constant_`
   bool stale_ = false;                   ///< whether the operators have changed since
+  std::optional<ReducedSolver> reduced_; ///< in place of PETSc's objects, which then are not made
+  std::vector<double> values_;           ///< of the matrix to be projected
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_, residual_;
   PetscScatter gather_;

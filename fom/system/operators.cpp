@@ -67,7 +67,8 @@ Operators<dim> build_operators(const Discretisation<dim>& disc, MPI_Comm comm, P
   operators.ownership = distribute_unknowns(disc, ranks);
   const Share share{&operators.ownership.owner, operators.rank};
   for (std::size_t p = 0; p < disc.cut.parts.size(); ++p)
-    if (share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0)))
+    if (disc.part_weight(static_cast<int>(p)) > 0 &&
+        share.has(disc.velocity_unknown(disc.fluid_nodes.part_dofs[p][0], 0)))
       operators.own_parts.push_back(static_cast<int>(p));
 
   using Body = SolidBody<dim>;

@@ -34,7 +34,7 @@ struct Operators {
   std::vector<SolidCell> nonlinear_cells; ///< of the share
   PartMoments<dim> moments;               ///< of linear velocities; else empty
   PartMoments<dim> widening;  ///< moments with the weight div w, w the velocity of the map; else empty
-  std::vector<int> own_parts; ///< parts of the share
+  std::vector<int> own_parts; ///< parts of the share with a weight
   std::vector<PartGeometry<dim>> geometries;       ///< by part, moved
   VelocityJumps<dim> velocity_jumps;               ///< of the share, where the local velocity scales them
   std::map<std::string, Eigen::VectorXd> openings; ///< outward flow functional of every opening, cm^3/s
@@ -147,8 +147,8 @@ void visit_moved_skin(const Discretisation<dim>& disc, const Operators<dim>& ope
     const Point<dim> area_vector = geometry.cofactor * piece.normal;
     const auto place = [&](int q) {
       const auto lambda = geometry.barycentric(disc.cut.interface_quadrature.points[q]);
-      return std::pair(
-          lambda, disc.cut.interface_quadrature.weights[q] * measure(geometry.corners.row(0).dot(lambda)));
+      return std::pair(lambda, geometry.weight * disc.cut.interface_quadrature.weights[q] *
+                                   measure(geometry.corners.row(0).dot(lambda)));
     };
     visit_carried<dim, order>(
         disc, piece.part, piece.quadrature_begin, piece.quadrature_end, place,

@@ -1,6 +1,8 @@
 // Powers and energies of one step.
 #pragma once
 
+#include <limits>
+
 namespace undula::fom {
 
 /// What one step did, term by term; powers in erg/s, energies in erg. With T the scheme's time derivative,
@@ -24,5 +26,10 @@ struct EnergyTerms {
   double kinetic = 0; ///< energy, erg
   double elastic = 0; ///< energy, erg
 };
+
+inline constexpr double unknown_power = std::numeric_limits<double>::quiet_NaN();
+inline constexpr EnergyTerms unknown_energy{unknown_power, unknown_power, unknown_power, unknown_power,
+                                            unknown_power, unknown_power, unknown_power, unknown_power,
+                                            unknown_power, unknown_power, unknown_power, unknown_power};
 
 } // namespace undula::fom

@@ -210,6 +210,21 @@ void CampaignStore::store(const Claim& claim, const RunRecord& record) const {
   std::filesystem::remove(lock_file(file));
 }
 
+std::vector<OperatingPoint> CampaignStore::recorded_points() const {
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    if (entry.path().extension() == ".h5" && entry.path().filename() != stamp_name)
+      files.insert(entry.path());
+  std::vector<OperatingPoint> points;
+  for (const auto& file : files) {
+    try {
+      points.push_back(point_of_record(file, stamp_.hash));
+    } catch (const InputError&) { // no record of this campaign: nothing to learn from
+    }
+  }
+  return points;
+}
+
 RunRecord CampaignStore::load(const OperatingPoint& point) const {
   return read_run_record(record_file(point), stamp_.hash, point);
 }

@@ -89,6 +89,9 @@ public:
   /// Throws InputError if there is no whole record of the point.
   RunRecord load(const OperatingPoint& point) const;
 
+  /// Points of all whole records in the folder, in the order of their names.
+  std::vector<OperatingPoint> recorded_points() const;
+
   std::filesystem::path record_file(const OperatingPoint& point) const;
 
 private:

@@ -48,8 +48,7 @@ std::string point_text(const OperatingPoint& point) {
          exact_number(point.head) + " dyn/cm^2";
 }
 
-Hdf5File open_checked(const std::filesystem::path& path, const std::string& campaign_hash,
-                      const OperatingPoint& point) {
+Hdf5File open_of_campaign(const std::filesystem::path& path, const std::string& campaign_hash) {
   auto file = Hdf5File::open_sealed(path);
   const auto seen =
       file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
@@ -58,6 +57,12 @@ Hdf5File open_checked(const std::filesystem::path& path, const std::string& camp
   if (hash != campaign_hash)
     throw InputError("the record belongs to another campaign", "campaign hash " + hash,
                      "campaign hash " + campaign_hash, path.string());
+  return file;
+}
+
+Hdf5File open_checked(const std::filesystem::path& path, const std::string& campaign_hash,
+                      const OperatingPoint& point) {
+  auto file = open_of_campaign(path, campaign_hash);
   if (const auto there = read_point(file); !same_point(there, point))
     throw InputError("the record is that of another point", point_text(there), point_text(point),
                      path.string());
@@ -99,6 +104,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 } // namespace
+
+OperatingPoint point_of_record(const std::filesystem::path& path, const std::string& campaign_hash) {
+  return read_point(open_of_campaign(path, campaign_hash));
+}
 
 bool same_point(const OperatingPoint& a, const OperatingPoint& b) {
   return a.frequency == b.frequency && a.head == b.head && a.drive == b.drive &&

@@ -21,6 +21,9 @@ RunRecord read_run_record(const std::filesystem::path& file, const std::string& 
 void check_run_record(const std::filesystem::path& file, const std::string& campaign_hash,
                       const OperatingPoint& point);
 
+/// The point of a record. Throws InputError for a missing, damaged or foreign file.
+OperatingPoint point_of_record(const std::filesystem::path& file, const std::string& campaign_hash);
+
 /// Whether both are the same point, bit for bit.
 bool same_point(const OperatingPoint& a, const OperatingPoint& b);
 

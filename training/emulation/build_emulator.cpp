@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "fom/levels/emulated_level.hpp"
-#include "fom/levels/marched_curve.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
+#include "training/campaign/recorded_level.hpp"
 #include "training/emulation/fit_process.hpp"
 
 namespace undula::training {
@@ -25,17 +25,6 @@ std::string point_text(const rom::Emulator& emulator, const rom::EmulatorPoint& 
   for (std::size_t i = 0; i < point.size(); ++i)
     text += (i > 0 ? ", " : "") + plain_number(point[i]) + " " + emulator.inputs[i].unit;
   return text;
-}
-
-CurvePoint curve_point_of(const Scene& scene, const RunRecord& record) {
-  PeriodicRun run;
-  run.state = record.state;
-  run.reason = record.reason;
-  run.cycles = record.cycles;
-  run.plain_periods = record.plain_periods;
-  run.blood = scene.blood;
-  run.seconds = record.seconds;
-  return curve_point(run, units::pressure_to_mmHg(record.point.head));
 }
 
 /// Nothing for runs that say no mean flow; `why` then tells.

@@ -157,6 +157,15 @@ std::vector<OperatingPoint> in_units(const Box& box, const std::vector<UnitPoint
 
 } // namespace
 
+bool is_inside(const TrainingPlan& plan, const OperatingPoint& point) {
+  const Box box = checked_box(plan, point);
+  const double drive = point.drive == Drive::voltage ? point.voltage : point.stroke;
+  const UnitPoint x{point.frequency, drive, point.head};
+  for (int i = 0; i < ranges; ++i)
+    if (x[i] < box.low[i] || x[i] > box.high[i]) return false;
+  return true;
+}
+
 std::vector<OperatingPoint> candidate_points(const TrainingPlan& plan, const OperatingPoint& like) {
   const Box box = checked_box(plan, like);
   const ScrambledHalton halton(4107);

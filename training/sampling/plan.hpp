@@ -27,6 +27,9 @@ struct SamplingPlan {
 /// out. Throws InputError for a range with low > high, a negative count, or points in a box without width.
 SamplingPlan plan_samples(const TrainingPlan& box, const OperatingPoint& like = {});
 
+/// Whether a point lies in the box, its faces included.
+bool is_inside(const TrainingPlan& box, const OperatingPoint& point);
+
 /// Points of a dense scrambled Halton set over the whole box, for who looks for the best of them; the same on
 /// every machine, and none of `plan_samples`. Throws as that does.
 std::vector<OperatingPoint> candidate_points(const TrainingPlan& box, const OperatingPoint& like = {});

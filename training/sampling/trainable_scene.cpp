@@ -16,6 +16,17 @@ void require_trainable(const Scene& scene) {
     throw InputError(what, seen, allowed, scene.file.string() + ", section [" + section + "]");
   };
   if (scene.training.model == ModelKind::emulator) return; // it takes what any level computes
+  if (scene.space != Space::thin_gap && scene.coupling == Coupling::mapped) {
+    refuse(scene.operating_point.drive != Drive::voltage,
+           "a reduced model of a moving domain is driven by a voltage", "operating_point.drive = \"stroke\"",
+           "drive = \"voltage\", which leaves no motion imposed; training.model = \"emulator\"",
+           "operating_point");
+    refuse(scene.training.snapshots_per_period != scene.time.steps_per_period,
+           "a model of a moving domain is made from every step of a period",
+           "snapshots_per_period = " + std::to_string(scene.training.snapshots_per_period),
+           "as many as time.steps_per_period", "training");
+    return;
+  }
   refuse(scene.space == Space::thin_gap, "a thin-gap scene needs no reduced model",
          "model.space = \"thin-gap\"",
          "undula hq on the scene itself, which takes seconds; training.model = \"emulator\"; or a scene of "

@@ -80,6 +80,57 @@ TEST_F(EmulatorCommands, ACurveLiesOnTheScenesOwnWithinItsError) {
   }
 }
 
+// Outside of the box the emulator is not sure: the scene is run there, recorded, and learnt from.
+TEST_F(EmulatorCommands, AHybridCurveRunsTheSceneWhereTheEmulatorIsNotSure) {
+  const ScratchFolder own;
+  std::filesystem::copy(folder->path() / "pump.h5", own.path() / "pump.h5");
+  std::filesystem::copy(folder->path() / "pump.h5.runs", own.path() / "pump.h5.runs",
+                        std::filesystem::copy_options::recursive);
+  const auto count = [&] {
+    std::size_t records = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(own.path() / "pump.h5.runs")) {
+      records += entry.path().extension() == ".h5" && entry.path().filename() != "campaign.h5" ? 1 : 0;
+    }
+    return records;
+  };
+  const Words train = train_words();
+  Words ask = {"hq",     "pump.h5", "--frequency", "120",          "--voltage",
+               "42",     "--head",  "40,100",      "--tolerance",  "0.05",
+               "--then", scene,     "--campaign",  "pump.h5.runs", "--json"};
+  const std::size_t before = count();
+  // The folder is that of the scene with the settings that were trained.
+  for (std::size_t k = 4; k < train.size(); ++k) {
+    ask.push_back(train[k]);
+  }
+  const auto answer = json_of(ask, own);
+  EXPECT_EQ(answer["points"][0]["tier"], "emulator");
+  EXPECT_EQ(answer["points"][1]["tier"], "scene wave_pump_bench");
+  EXPECT_LE(answer["points"][0]["error_l_per_min"].get<double>(), 0.05);
+  EXPECT_EQ(count(), before + 1);
+  const auto alone = json_of({"hq", scene, "--voltage", "42", "--head", "100", "--json"}, own);
+  EXPECT_NEAR(answer["points"][1]["flow_l_per_min"].get<double>(),
+              alone["points"][0]["flow_l_per_min"].get<double>(), 1e-6);
+  // Asked again, the record answers.
+  EXPECT_EQ(json_of(ask, own)["points"][1]["flow_l_per_min"], answer["points"][1]["flow_l_per_min"]);
+  EXPECT_EQ(count(), before + 1);
+}
+
+TEST_F(EmulatorCommands, TrainingTakesRecordedRunsOfTheBoxWhenAsked) {
+  Words words = train_words({"--campaign", "pump.h5.runs", "--json", "--with-recorded"});
+  words[3] = "fewer.h5";
+  for (std::string& word : words) {
+    if (word == "training.training_points=10") {
+      word = "training.training_points=4";
+    }
+  }
+  const auto all = json_of(words, *folder);
+  std::erase(words, "--with-recorded");
+  const auto planned = json_of(words, *folder);
+  EXPECT_GT(all["runs"].size(), planned["runs"].size());
+  EXPECT_LT(all["left_out"]["rms_l_per_min"].get<double>(),
+            planned["left_out"]["rms_l_per_min"].get<double>());
+}
+
 TEST_F(EmulatorCommands, SeveralCurvesAndASceneBesideTakeTheirVoltages) {
   const auto several = run_undula(
       {"hq", "pump.h5", "--frequency", "120", "--voltage", "40,46", "--head", "40"}, folder->path());
