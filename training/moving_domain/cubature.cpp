@@ -143,11 +143,19 @@ struct Normal {
   }
 };
 
-std::vector<Eigen::Index> sampled(const RunRecord& run) {
-  std::vector<Eigen::Index> chosen;
+/// A snapshot, or a part of it: runs start from rest, where maps and velocities are smaller than any in a
+/// record.
+struct Sample {
+  Eigen::Index snapshot = 0;
+  double part = 1;
+};
+
+std::vector<Sample> sampled(const RunRecord& run) {
+  std::vector<Sample> chosen;
   const auto all = static_cast<Eigen::Index>(run.times.size());
   for (int k = 0; k < snapshots_per_run; ++k)
-    chosen.push_back(std::max<Eigen::Index>(2, (k + 1) * all / snapshots_per_run - 1));
+    chosen.push_back({std::max<Eigen::Index>(2, (k + 1) * all / snapshots_per_run - 1), 1});
+  for (const double part : {0.02, 0.3}) chosen.push_back({all / 2, part});
   return chosen;
 }
 
@@ -189,12 +197,14 @@ Cubature choose_cubature(PreparedScene& prepared, const Scene& scene, const Eige
   std::mt19937_64 random(11);
   for (const auto& run : runs) {
     const double time_step = 1 / (run.point.frequency * scene.time.steps_per_period);
-    for (const Eigen::Index k : sampled(run)) {
-      const Eigen::VectorXd x = unknowns_at(disc, run, k);
-      const Eigen::VectorXd rate = (alpha[0] * x + alpha[1] * unknowns_at(disc, run, k - 1) +
-                                    alpha[2] * unknowns_at(disc, run, k - 2)) /
+    for (const auto& [k, part] : sampled(run)) {
+      const Eigen::VectorXd x = part * unknowns_at(disc, run, k);
+      const Eigen::VectorXd rate = (alpha[0] * x + part * (alpha[1] * unknowns_at(disc, run, k - 1) +
+                                                           alpha[2] * unknowns_at(disc, run, k - 2))) /
                                    time_step;
       disc.map = map_at(run, k, time_step);
+      for (auto* values : {&disc.map.displacement, &disc.map.velocity})
+        for (auto& value : *values) value *= part;
       const Eigen::MatrixXd tried = random_fields(basis, pressure_modes, random);
       std::array<Eigen::MatrixXd, kinds> exerted;
       exerted.fill(Eigen::MatrixXd::Zero(modes, parts));
@@ -202,10 +212,10 @@ Cubature choose_cubature(PreparedScene& prepared, const Scene& scene, const Eige
         disc.reduced = weights[colour];
         move_operators(disc, operators[colour], timer);
         const auto forces = fluid_forces(disc, operators[colour], x, rate, tried, alpha[0] / time_step);
-        for (const int part : colours[colour])
-          for (const int row : rows[static_cast<std::size_t>(part)])
+        for (const int of : colours[colour])
+          for (const int row : rows[static_cast<std::size_t>(of)])
             for (int kind = 0; kind < kinds; ++kind)
-              exerted[static_cast<std::size_t>(kind)].col(part) +=
+              exerted[static_cast<std::size_t>(kind)].col(of) +=
                   forces(row, kind) * by_row.row(row).transpose();
       }
       for (const auto& each : exerted) {
@@ -213,7 +223,7 @@ Cubature choose_cubature(PreparedScene& prepared, const Scene& scene, const Eige
         continuity.add(each.bottomRows(pressure_modes));
       }
 
-      const Eigen::VectorXd d = displacements_at(disc, run, k);
+      const Eigen::VectorXd d = part * displacements_at(disc, run, k);
       std::array<Eigen::MatrixXd, 2> by_cell; // forces, and how they change with a random displacement
       by_cell.fill(Eigen::MatrixXd::Zero(velocities, static_cast<Eigen::Index>(nonlinear.size())));
       disc.reduced = nullptr;
