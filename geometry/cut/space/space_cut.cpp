@@ -91,6 +91,11 @@ void SpaceCut::find_exact_parts(int index, int k, const ExactCells<3>& exact, co
     int part = -1;
   };
   std::vector<Sum> sums(patches.size());
+  struct Stray {
+    Point<3> middle;
+    int part;
+  };
+  std::vector<Stray> strays;
   for (const auto& trace : near.traces[facet.local[k]]) {
     // Seen from the middle of the largest triangle of the trace.
     double total = 0, largest = -1;
@@ -104,15 +109,26 @@ void SpaceCut::find_exact_parts(int index, int k, const ExactCells<3>& exact, co
     }
     std::size_t at = 0;
     while (at < patches.size() && !patch_contains(patches[at], setup_.shapes[index].outward, middle)) ++at;
-    if (at == patches.size()) continue; // a sliver beside its patch
+    const int part = cut.cell_parts[facet.cells[k]] + trace.part;
+    if (at == patches.size()) { // so narrow that rounding has put it beside its patch
+      strays.push_back({middle, part});
+      continue;
+    }
     sums[at].area += total;
     if (total <= sums[at].largest) continue;
     sums[at].largest = total;
-    sums[at].part = cut.cell_parts[facet.cells[k]] + trace.part;
+    sums[at].part = part;
   }
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (!(std::abs(sums[p].area - patches[p].area) <= closure_tolerance * setup_.shapes[index].measure))
       throw CutContradiction{facet.cells[k]};
+    if (sums[p].part < 0 && !strays.empty()) {
+      Point<3> middle = Point<3>::Zero();
+      for (const auto& x : patches[p].outline) middle += x / static_cast<double>(patches[p].outline.size());
+      sums[p].part = std::min_element(strays.begin(), strays.end(), [&](const Stray& a, const Stray& b) {
+                       return (a.middle - middle).squaredNorm() < (b.middle - middle).squaredNorm();
+                     })->part;
+    }
     patches[p].parts[k] = sums[p].part;
   }
 }
