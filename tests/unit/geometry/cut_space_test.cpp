@@ -8,6 +8,7 @@
 
 #include "geometry/cut/cut.hpp"
 #include "geometry/cut/cut_reproducer.hpp"
+#include "geometry/mesh/space_mesh.hpp"
 #include "rom/base/error.hpp"
 #include "space_invariants.hpp"
 
@@ -70,7 +71,7 @@ void sweep(int positions) {
   int filtered = 0, exact = 0;
   for (int step = 0; step < positions; ++step) {
     SCOPED_TRACE("position " + std::to_string(step) + " of " + std::to_string(positions));
-    const double s = std::round(256.0 * step / positions) / 256;
+    const double s = std::round(1024.0 * step / positions) / 1024;
     const Solids3 solids{moved(plate, Point<3>(0.5 * s, 0.125 + 0.25 * s, 0.0625 + 0.75 * s))};
     const auto cut = checked_cut(unit_box(), solids);
     filtered += cut.filtered_cells;
@@ -237,6 +238,25 @@ TEST(CutSpace, AHollowBody) {
   const auto cut = checked_cut(unit_box(), {moved(body, {0.51, 0.52, 0.49}, rotation(0.7, {1, 3, 2}))});
   EXPECT_NEAR(summary(cut).volume, 1 - 0.216 + 0.008, tight);
   EXPECT_NEAR(summary(cut).interface, 6 * (0.36 + 0.04), tight);
+}
+
+TEST(CutSpace, ASectorOfABodyOfRevolutionWithADiscInIt) {
+  TaggedPolygon chamber, disc;
+  chamber.points = {{0.3, 0}, {1, 0}, {1, 0.4}, {0.3, 0.3}};
+  chamber.tags = {0, 1, 2, 3};
+  chamber.names = {"lower", "rim", "upper", "inlet"};
+  disc.points = {{0.45, 0.15}, {1.2, 0.15}, {1.2, 0.19}, {0.45, 0.19}};
+  disc.tags = {0, 0, 0, 0};
+  disc.names = {"skin"};
+  const auto background = mesh_revolved(chamber, 40, [](const Point<3>&) { return 0.1; });
+  const auto ring = mesh_revolved(disc, 60, [](const Point<3>&) { return 0.06; });
+  auto bent = moved(ring, Point<3>::Zero(), rotation(-0.17, {0, 0, 1})); // reaches beyond the sector
+  bent.boundary.clear();
+  for (auto& p : bent.points) p[2] += 0.05 * std::sin(7 * std::hypot(p[0], p[1]) + 3 * p[1]);
+  const auto cut = checked_cut(background, {bent});
+  EXPECT_EQ(cut.exact_cells, 0);
+  EXPECT_GT(cut.filtered_cells, 400);
+  std::printf("%zu cells, %d cut\n", background.cells.size(), cut.filtered_cells);
 }
 
 TEST(CutSpace, IsInvariantUnderRenumbering) {
