@@ -90,7 +90,7 @@ private:
     add_exact_parts(near, exact_.table(), setup_, cut_);
     double sum = 0;
     for (std::size_t part = first; part < cut_.parts.size(); ++part) sum += cut_.parts[part].measure;
-    if (const auto error = error_of_sum(near, sum, setup_, solids_, exact_.table()); !error.empty())
+    if (const auto error = error_of_sum(near, sum, setup_, solids_); !error.empty())
       fail(cell, near.solid_cells, error);
   }
 
