@@ -5,7 +5,6 @@
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
-#include <CGAL/hilbert_sort.h>
 #include <CGAL/make_mesh_3.h>
 
 #include <algorithm>
@@ -18,7 +17,7 @@
 
 #include "geometry/mesh/outline_faults.hpp"
 #include "geometry/mesh/polygons.hpp"
-#include "geometry/mesh/space_mesh.hpp"
+#include "geometry/mesh/refined_cells.hpp"
 #include "rom/base/error.hpp"
 
 namespace undula::geometry {
@@ -31,11 +30,6 @@ using Complex =
     CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 using Polyline = std::vector<Kernel::Point_3>;
-
-/// Of a regular tetrahedron with edges of one: the radii of the balls around its cell and its facets, which
-/// refinement bounds. Edges of the finished mesh then scatter about the target.
-constexpr double cell_radius = 0.7;
-constexpr double facet_radius = 0.65;
 
 /// Least number of edges of a circle.
 constexpr double least_edges = 12;
@@ -198,51 +192,14 @@ void check(const TaggedPolygon& profile, double sector_degrees) {
     refuse(std::to_string(sector_degrees) + " degrees", "an angle above 0 and up to 360 degrees");
 }
 
-struct ScaledSize {
-  using FT = double;
-  using Point_3 = Kernel::Point_3;
-  using Index = Domain::Index;
-  const SpaceSizeField* size;
-  double factor;
-  bool on_circle; // no longer than a part of the circle through the point
-  double operator()(const Point_3& x, const int, const Index&) const {
-    const double wanted = factor * (*size)(Point<3>(x.x(), x.y(), x.z()));
-    if (!on_circle) return wanted;
+/// No longer than a part of the circle through the point.
+struct EdgeSize : ScaledSize<Domain> {
+  double operator()(const Point_3& x, const int dimension, const Index& index) const {
+    const double wanted = ScaledSize<Domain>::operator()(x, dimension, index);
     const double around = 2 * std::numbers::pi * std::hypot(x.x(), x.y()) / least_edges;
     return around > 0 ? std::min(wanted, std::max(around, 0.2 * wanted)) : wanted;
   }
 };
-
-/// Numbers the vertices along a Hilbert curve and fills points and cells.
-SimplexMesh<3> cells_of(const Complex& complex) {
-  std::vector<Kernel::Point_3> points;
-  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell)
-    for (int i = 0; i < 4; ++i) points.push_back(cell->vertex(i)->point().point());
-  // Sorted by coordinates first: the curve then depends on the set of points only.
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  CGAL::hilbert_sort(points.begin(), points.end(), Kernel());
-  std::map<Kernel::Point_3, int> number;
-  SimplexMesh<3> mesh;
-  for (const auto& x : points) {
-    number.emplace(x, static_cast<int>(mesh.points.size()));
-    mesh.points.emplace_back(x.x(), x.y(), x.z());
-  }
-  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
-    std::array<int, 4> v;
-    for (int i = 0; i < 4; ++i) v[i] = number.at(cell->vertex(i)->point().point());
-    // Even permutations: the lowest point first, then the lowest of the others.
-    const auto lowest = std::min_element(v.begin(), v.end()) - v.begin();
-    if (lowest != 0) {
-      std::swap(v[0], v[lowest]);
-      std::swap(v[lowest == 1 ? 2 : 1], v[lowest == 3 ? 2 : 3]);
-    }
-    std::rotate(v.begin() + 1, std::min_element(v.begin() + 1, v.end()), v.end());
-    mesh.cells.push_back(v);
-  }
-  std::sort(mesh.cells.begin(), mesh.cells.end());
-  return mesh;
-}
 
 /// The surface that a facet of the boundary lies on.
 const Surface& surface_of(const std::vector<Surface>& surfaces, const Revolved& body,
@@ -267,40 +224,11 @@ const Surface& surface_of(const std::vector<Surface>& surfaces, const Revolved& 
   return *nearest;
 }
 
-/// Takes away cells that lie flat in a surface, with two facets on it: refinement leaves some. True if there
-/// was one.
-bool peel(const std::vector<Surface>& surfaces, const Revolved& body, SimplexMesh<3>& mesh) {
-  constexpr double flat = 0.02; // of the cube of the longest edge; a regular cell has 0.12
-  const auto table = build_facet_table(mesh);
-  std::vector<char> gone(mesh.cells.size(), 0);
-  for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c) {
-    if (cell_measure(mesh, c) > flat * std::pow(cell_diameter(mesh, c), 3)) continue;
-    std::vector<Surface> outside;
-    bool beside_gone = false;
-    for (const int f : table.cell_facets[c]) {
-      const auto& facet = table.facets[f];
-      if (facet.cells[1] < 0)
-        outside.push_back(surface_of(surfaces, body, mesh, facet));
-      else
-        beside_gone = beside_gone || gone[facet.cells[0]] || gone[facet.cells[1]];
-    }
-    gone[c] = outside.size() == 2 && outside[0] == outside[1] && !beside_gone;
-  }
-  std::size_t kept = 0;
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    if (!gone[c]) mesh.cells[kept++] = mesh.cells[c];
-  const bool changed = kept < mesh.cells.size();
-  mesh.cells.resize(kept);
-  return changed;
-}
-
 /// Finds on which surface each facet of the boundary lies, and moves its points onto their surfaces.
 void add_boundary(const Revolved& body, const std::vector<std::string>& names, SimplexMesh<3>& mesh) {
   mesh.boundary_names = names;
   if (!body.whole()) mesh.boundary_names.emplace_back(symmetry_name);
   const auto surfaces = body.surfaces();
-  while (peel(surfaces, body, mesh)) {
-  }
   std::vector<std::set<Surface>> of_points(mesh.points.size());
   for (const auto& facet : build_facet_table(mesh).facets) {
     if (facet.cells[1] >= 0) continue;
@@ -337,15 +265,17 @@ SimplexMesh<3> mesh_revolved(const TaggedPolygon& profile, double sector_degrees
       bounding_object = body.box(), p_rng = &random, relative_error_bound = 1e-7);
   const auto lines = body.lines(size);
   domain.add_features(lines.begin(), lines.end());
-  const Criteria criteria(edge_size = ScaledSize{&size, 1, true}, facet_angle = 25,
-                          facet_size = ScaledSize{&size, facet_radius, false},
-                          facet_distance = ScaledSize{&size, 0.1, false}, cell_radius_edge_ratio = 2,
-                          cell_size = ScaledSize{&size, cell_radius, false});
+  using Size = ScaledSize<Domain>;
+  const Criteria criteria(edge_size = EdgeSize{{&size, 1}}, facet_angle = 25,
+                          facet_size = Size{&size, facet_radius},
+                          facet_distance = Size{&size, surface_distance}, cell_radius_edge_ratio = 2,
+                          cell_size = Size{&size, cell_radius});
   // Moving points (odt, perturb) takes flat cells away. Exudation does so too, but its result depends on
   // where CGAL's objects lie in memory.
   const auto complex =
       CGAL::make_mesh_3<Complex>(domain, criteria, odt(max_iteration_number = 10), no_exude());
-  auto mesh = cells_of(complex);
+  auto mesh = refined_cells(complex);
+  peel_flat_cells(mesh);
   add_boundary(body, profile.names, mesh);
   return mesh;
 }

@@ -2,6 +2,7 @@
 // surface of triangles bounds.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 
 #include "geometry/mesh/polygon_mesh.hpp"
@@ -24,5 +25,15 @@ inline constexpr const char* symmetry_name = "symmetry";
 /// per side, reaches beyond the axis, or the angle is not in (0, 360]; NumericsError if refinement does not
 /// keep the boundary.
 SimplexMesh<3> mesh_revolved(const TaggedPolygon& profile, double sector_degrees, const SpaceSizeField& size);
+
+/// Boundary name of what a surface of triangles bounds.
+inline constexpr const char* surface_name = "surface";
+
+/// What the closed surface of an OFF or STL file bounds, by the same refinement. Its coordinates are
+/// multiplied by `cm_per_unit`. Edges where it turns by more than 30 degrees are kept; elsewhere cells
+/// approach it, points of the boundary on its triangles. Throws InputError if the file cannot be read, holds
+/// other than triangles, or its surface is open, crosses itself, or has an edge with more than two triangles.
+SimplexMesh<3> mesh_closed_surface(const std::filesystem::path& file, double cm_per_unit,
+                                   const SpaceSizeField& size);
 
 } // namespace undula::geometry
