@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/mesh/overlap_volume.hpp"
 #include "geometry/mesh/polygons.hpp"
 
 namespace undula::geometry {
@@ -28,7 +29,7 @@ std::array<Point<dim>, dim + 1> corners(const SimplexMesh<dim>& mesh, int cell) 
 template <int dim>
 std::string error_of_sum(const ExactCell<dim>& near, double sum,
                          const typename BackgroundCutter<dim>::Setup& setup,
-                         std::span<const SimplexMesh<dim>> solids, const HyperplaneTable<dim>& table) {
+                         std::span<const SimplexMesh<dim>> solids) {
   const double element = std::abs(cell_measure(setup.mesh, near.cell));
   double solid = 0, solid_cells = 0;
   for (const auto& removed : near.shape.removed) solid += measure_of<dim>(removed, setup.volume_rule);
@@ -36,13 +37,12 @@ std::string error_of_sum(const ExactCell<dim>& near, double sum,
     return "the parts of an element and its solid part do not add up to the element";
   if (near.shape.removed.empty()) return {};
   for (const auto& cell : near.solid_cells) {
-    if constexpr (dim == 2) {
-      solid_cells += overlap_area(corners(setup.mesh, near.cell), corners(solids[cell.solid], cell.cell));
-    } else {
-      const auto sides = table.sides(mesh_of_solid(cell.solid), cell.cell);
-      if (const auto overlap = intersect<dim>(cell_polytope(table, 0, near.cell), sides, table))
-        solid_cells += measure_of<dim>(*overlap, setup.volume_rule);
-    }
+    const auto element_corners = corners(setup.mesh, near.cell),
+               of_cell = corners(solids[cell.solid], cell.cell);
+    if constexpr (dim == 2)
+      solid_cells += overlap_area(element_corners, of_cell);
+    else
+      solid_cells += overlap_volume(element_corners, of_cell);
   }
   if (!(std::abs(solid_cells - solid) <= closure_tolerance * element)) return "solids overlap";
   return {};
@@ -75,11 +75,11 @@ std::optional<int> first_open_cell(const CutMesh<dim>& cut,
 }
 
 template std::string error_of_sum<2>(const ExactCell<2>&, double, const BackgroundCutter<2>::Setup&,
-                                     std::span<const SimplexMesh<2>>, const HyperplaneTable<2>&);
+                                     std::span<const SimplexMesh<2>>);
 template std::optional<int> first_open_cell<2>(const CutMesh<2>&, const BackgroundCutter<2>::Setup&,
                                                std::span<const int>);
 template std::string error_of_sum<3>(const ExactCell<3>&, double, const BackgroundCutter<3>::Setup&,
-                                     std::span<const SimplexMesh<3>>, const HyperplaneTable<3>&);
+                                     std::span<const SimplexMesh<3>>);
 template std::optional<int> first_open_cell<3>(const CutMesh<3>&, const BackgroundCutter<3>::Setup&,
                                                std::span<const int>);
 

@@ -17,7 +17,7 @@ constexpr double closure_tolerance = 1e-10;
 template <int dim>
 std::string error_of_sum(const ExactCell<dim>& near, double sum,
                          const typename BackgroundCutter<dim>::Setup& setup,
-                         std::span<const SimplexMesh<dim>> solids, const HyperplaneTable<dim>& table);
+                         std::span<const SimplexMesh<dim>> solids);
 
 /// The first of `cells` with a part that is not closed: the integral of the outward normal over its boundary
 /// is not 0.

@@ -42,6 +42,9 @@ BackgroundCutter<dim>::Setup::Setup(SimplexMesh<dim> background, std::span<const
   if constexpr (dim == 2) {
     index.emplace(mesh, facets);
     skin = build_solid_skin(solids, solid_facets);
+  } else if (!options.exact) {
+    space.emplace(mesh, facets);
+    surface = build_skin_surface(solids, solid_facets);
   }
 }
 

@@ -7,6 +7,8 @@
 
 #include "geometry/cut/cut.hpp"
 #include "geometry/cut/plane/skin_walk.hpp"
+#include "geometry/cut/space/skin_surface.hpp"
+#include "geometry/cut/space/space_index.hpp"
 #include "geometry/mesh/quadrature.hpp"
 
 namespace undula::geometry {
@@ -35,6 +37,8 @@ struct BackgroundCutter<dim>::Setup {
   std::vector<std::vector<std::array<int, dim + 1>>> solid_cells;
   std::optional<BackgroundIndex> index; // 2D
   SolidSkin skin;                       // 2D
+  std::optional<SpaceIndex> space;      // 3D
+  SkinSurface surface;                  // 3D
 };
 
 } // namespace undula::geometry

@@ -13,7 +13,7 @@
 
 namespace {
 
-using namespace undula;
+using namespace undula::geometry;
 
 struct Pump {
   explicit Pump(const benchmark::State& state) : amplitude(1e-3 * static_cast<double>(state.range(1))) {

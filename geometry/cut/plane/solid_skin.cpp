@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "geometry/cut/plane/orientation.hpp"
+#include "geometry/cut/space/orientation.hpp"
 #include "geometry/mesh/box_grid.hpp"
 #include "rom/base/error.hpp"
 
@@ -119,14 +119,13 @@ void check_placed_solids(std::span<const SimplexMesh<dim>> solids) {
                             "point " + std::to_string(p) + " of the solid mesh " + std::to_string(s),
                             "a smaller time step");
     for (int c = 0; c < static_cast<int>(solids[s].cells.size()); ++c) {
+      const auto& v = solids[s].cells[c];
+      const auto& x = solids[s].points;
       bool positive;
-      if constexpr (dim == 2) {
-        const auto& v = solids[s].cells[c];
-        const auto& x = solids[s].points;
+      if constexpr (dim == 2)
         positive = exact_orientation(x[v[0]], x[v[1]], x[v[2]]) > 0;
-      } else {
-        positive = cell_measure(solids[s], c) > 0;
-      }
+      else
+        positive = exact_orientation(x[v[0]], x[v[1]], x[v[2]], x[v[3]]) > 0;
       if (!positive)
         throw NumericsError("a cell of a placed solid is flat or inverted", cell_name(s, c),
                             "a smaller time step or stroke, or a finer solid mesh");
