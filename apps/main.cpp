@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   undula::apps::add_validate_command(app);
   undula::apps::add_calibrate_command(app);
   undula::apps::add_report_command(app);
+  undula::apps::add_study_command(app);
 
   // 3. Run; every failure becomes one message and an exit code.
   try {

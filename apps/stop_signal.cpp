@@ -50,4 +50,24 @@ std::string signal_name(int signal) {
   }
 }
 
+void run_until_signal(MPI_Comm comm, const std::function<void(const std::function<void(MPI_Comm)>&)>& work,
+                      const std::function<std::string(const std::string& signal)>& message) {
+  const StopSignal stop;
+  int stopped = 0;
+  try {
+    work([&](MPI_Comm group) {
+      if (const int signal = stop.agreed(group); signal != 0) {
+        throw Stopped(signal_name(signal));
+      }
+    });
+  } catch (const Stopped&) {
+    stopped = 1;
+  }
+  // Groups of ranks may have been told at different times; here they meet.
+  MPI_Allreduce(MPI_IN_PLACE, &stopped, 1, MPI_INT, MPI_MAX, comm);
+  if (stopped != 0) {
+    throw Stopped(message(signal_name(stop.agreed(comm))));
+  }
+}
+
 } // namespace undula::apps

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <csignal>
+#include <functional>
 #include <stdexcept>
 #include <string>
 
@@ -36,5 +37,11 @@ private:
 
 /// "SIGTERM"
 std::string signal_name(int signal);
+
+/// Runs `work` on groups of ranks of `comm` until it ends, or until a signal: `work` calls what it is given
+/// after every step, with the communicator of its group. Throws Stopped on every rank after a signal, with
+/// the text that `message` makes of its name. Collective.
+void run_until_signal(MPI_Comm comm, const std::function<void(const std::function<void(MPI_Comm)>&)>& work,
+                      const std::function<std::string(const std::string& signal)>& message);
 
 } // namespace undula::apps

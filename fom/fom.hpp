@@ -4,11 +4,11 @@
 //   space/      unknowns on a cut          assembly/, materials/  weak forms, laws of solids
 //   system/     matrix, solver, Newton     time/                  steps and their energy
 //   coupling/, mapping/, contact/          how the fluid's domain follows the solids
-//   thin_gap/   the fast level             levels/                one door to every level
+//   thin_gap/, long_wave/  fast levels     levels/                one door to every level
 //   scene/      from a file to settings    machines/              from a scene to the problem of a pump
 //   output/     what is written of a run
 //
-// Folders of the first four lines know nothing of the others, thin_gap/ included (.ci/check_includes).
+// Folders of the first four lines know nothing of the others, fast levels included (.ci/check_includes).
 #pragma once
 
 namespace undula::geometry {}

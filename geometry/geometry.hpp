@@ -4,7 +4,7 @@
 //   cut/        the fluid parts of a background that solids cut, and their unknowns
 //     exact/    cells in exact arithmetic, in any dimension: the reference
 //     plane/    cells in floating point with certain signs
-//   wave_pump/  the drawing of the wave pump and its meshes
+//   wave_pump/  the drawing of the wave pump and its meshes; hose/: a hose between rollers and a track
 #pragma once
 
 #include "geometry/cut/cut.hpp"

@@ -115,7 +115,7 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
     check_picture_name(options.picture);
   }
   const Scene scene = read_scene(options.scene, options.overrides);
-  require_pump(scene, "undula calibrate");
+  require_wave_pump(scene, "undula calibrate");
   std::vector<FreeKey> keys;
   for (const std::string& text : options.free) {
     keys.push_back(parse_free_key(text));

@@ -14,6 +14,7 @@
 #include "apps/commands/commands.hpp"
 #include "apps/input/scene_check.hpp"
 #include "apps/mpi_session.hpp"
+#include "apps/output/hose_report.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_reference.hpp"
@@ -132,6 +133,9 @@ void print_json(const Scene& scene, const SceneCheck& check) {
   if (check.thin_gap) {
     result["thin_gap"] = layout_json(*check.thin_gap);
   }
+  if (check.hose) {
+    result["hose"] = hose_json(*check.hose);
+  }
   result["resolved"] = scene_to_toml(scene);
   std::cout << result.dump(2) << "\n";
 }
@@ -194,7 +198,10 @@ std::string closing_lines(const SceneCheck& check) {
 
 void print_text(const Scene& scene, const SceneCheck& check) {
   std::cout << scene_to_toml(scene) << "\n"
-            << (check.thin_gap ? layout_tables(*check.thin_gap) : mesh_tables(scene, check.meshes)) << "\n"
+            << (check.hose       ? hose_table(*check.hose)
+                : check.thin_gap ? layout_tables(*check.thin_gap)
+                                 : mesh_tables(scene, check.meshes))
+            << "\n"
             << weights_table(check.weights) << closing_lines(check) << "\nscene " << scene.name
             << " is valid, hash " << scene_hash(scene) << "\n";
 }

@@ -18,6 +18,7 @@
 #include "apps/mpi_session.hpp"
 #include "apps/output/curve_report.hpp"
 #include "apps/output/curve_warnings.hpp"
+#include "apps/output/hose_report.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/solve_plots.hpp"
 #include "apps/output/text_table.hpp"
@@ -142,6 +143,9 @@ std::string table_text(const SolvedRun& run) {
   if (!run.statistics.empty()) {
     return statistics_text(run.statistics);
   }
+  if (!run.periods.empty() && run.periods.front().turn) {
+    return turn_table(run.periods);
+  }
   std::vector<std::vector<std::string>> rows;
   for (const PeriodSummary& period : run.periods) {
     rows.push_back({std::to_string(period.period), decimals(period.outflow_l_per_min, 4),
@@ -175,6 +179,9 @@ std::string json_text(const SolvedRun& run, const PhaseTimer& timer) {
                                  {"energy_gap", period.energy_gap},
                                  {"speed_max_cm_per_s", period.speed_max_cm_per_s},
                                  {"clearance_min_mm", period.clearance_min_mm}});
+    if (period.turn) {
+      result["periods"].back()["turn"] = turn_json(*period.turn);
+    }
     if (std::isfinite(period.scheme_loss)) {
       result["periods"].back()["scheme_loss"] = period.scheme_loss;
     }

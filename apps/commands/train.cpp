@@ -158,9 +158,7 @@ void compute_runs(const Scene& scene, std::span<const OperatingPoint> points, co
                   const std::string& folder, MPI_Comm comm) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  const StopSignal stop;
-  bool stopped = false;
-  try {
+  const auto work = [&](const AfterStep& after_step) {
     std::optional<Progress> progress;
     if (rank == 0) {
       progress.emplace("train", static_cast<long>(points.size()));
@@ -176,24 +174,14 @@ void compute_runs(const Scene& scene, std::span<const OperatingPoint> points, co
       spdlog::info("{}/{}  {}: {} ({} s)", done, total, point_text(run.point), outcome,
                    decimals(run.seconds.at("total"), 1));
     };
-    run_campaign(scene, points, store, comm, tell, [&](MPI_Comm group) {
-      if (const int signal = stop.agreed(group); signal != 0) {
-        throw Stopped(signal_name(signal));
-      }
-    });
-  } catch (const Stopped&) {
-    stopped = true;
-  }
-  // Groups of ranks may have been told at different times; here they meet.
-  int any_stopped = stopped ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &any_stopped, 1, MPI_INT, MPI_MAX, comm);
-  if (any_stopped != 0) {
-    const int signal = stop.agreed(comm);
-    throw Stopped("stopped by " + signal_name(signal) + " with " +
-                  std::to_string(points.size() - store.status(points).pending.size()) + " of " +
-                  std::to_string(points.size()) + " runs stored in " + folder +
-                  "\n  the same command goes on with the others");
-  }
+    run_campaign(scene, points, store, comm, tell, after_step);
+  };
+  run_until_signal(comm, work, [&](const std::string& signal) {
+    return "stopped by " + signal + " with " +
+           std::to_string(points.size() - store.status(points).pending.size()) + " of " +
+           std::to_string(points.size()) + " runs stored in " + folder +
+           "\n  the same command goes on with the others";
+  });
 }
 
 /// Points as numbers, for the other ranks.

@@ -4,9 +4,11 @@
 #include <set>
 
 #include "fom/levels/scene_problem.hpp"
+#include "fom/machines/peristaltic_pump/hose_remarks.hpp"
 #include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/machines/wave_pump/pump_problem.hpp"
 #include "fom/scene/general_observables.hpp"
+#include "fom/scene/hose_checks.hpp"
 #include "fom/scene/scene_checks.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_time.hpp"
@@ -115,6 +117,14 @@ SceneCheck mesh_and_cut(const Scene& scene) {
     const ThinGapModel model = prepare_thin_gap(scene, timer);
     check.unknowns = unknowns(model);
     check.thin_gap = model.layout;
+    return check;
+  }
+  if (scene.space == Space::long_wave) {
+    check.hose = roller_track(scene);
+    check.unknowns = 1;
+    for (const std::string& remark : hose_remarks(scene)) {
+      check.notes.push_back(remark);
+    }
     return check;
   }
   FsiProblem<2> problem = scene_problem(scene);

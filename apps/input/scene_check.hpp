@@ -8,6 +8,7 @@
 #include "apps/apps.hpp"
 #include "fom/scene/scene.hpp"
 #include "fom/thin_gap/thin_gap.hpp"
+#include "geometry/hose/roller_track.hpp"
 #include "geometry/mesh/box_grid.hpp"
 #include "geometry/mesh/mesh_quality.hpp"
 
@@ -32,6 +33,7 @@ struct SceneCheck {
   double estimated_cells = 0;            ///< of all meshes, before they were made
   std::vector<CheckedMesh> meshes;       ///< none for thin gaps
   std::optional<ThinGapLayout> thin_gap; ///< of thin gaps
+  std::optional<RollerTrack> hose;       ///< of peristaltic pumps
   std::vector<CheckedWeight> weights;    ///< of the stabilisation; none for thin gaps
   int unknowns = 0;                      ///< of one step
   int steps = 0;                         ///< of a run

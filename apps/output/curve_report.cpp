@@ -47,6 +47,19 @@ constexpr Column drive_columns[] = {
     {"electrical (mW)", &CurvePoint::electrical_power_mW, 0, "failed"},
     {"efficiency (%)", &CurvePoint::efficiency_percent, 1, "failed"}};
 
+/// Of a peristaltic pump.
+constexpr Column hose_columns[] = {
+    {"per turn (ml)", &CurvePoint::flow_per_turn_ml, 3, "failed"},
+    {"ripple (l/min)", &CurvePoint::ripple_l_per_min, 4, "failed"},
+    {"leak (l/min)", &CurvePoint::leak_l_per_min, 4, "failed"},
+    {"torque (N m)", &CurvePoint::torque_N_m, 4, "failed"},
+    {"max torque (N m)", &CurvePoint::torque_max_N_m, 4, "failed"},
+    {"roller power (mW)", &CurvePoint::holder_power_mW, 1, "failed"},
+    {"efficiency (%)", &CurvePoint::efficiency_percent, 1, "failed"},
+    {"max roller force (N)", &CurvePoint::roller_force_max_N, 1, "failed"},
+    {"min outlet pressure (mmHg)", &CurvePoint::outlet_pressure_min_mmHg, 2, "failed"},
+    {"max outlet pressure (mmHg)", &CurvePoint::outlet_pressure_max_mmHg, 2, "failed"}};
+
 /// Whether any point knows it; an infinite error is known to be unknown.
 bool is_known(const Column& column, std::span<const CurvePoint> points) {
   return std::ranges::any_of(points,
@@ -94,6 +107,10 @@ std::string curve_table(const CurveReport& report) {
                        [&](const Column& column) { return is_known(column, report.points); });
   if (report.scene.operating_point.drive == Drive::voltage) {
     std::ranges::copy_if(drive_columns, std::back_inserter(shown),
+                         [&](const Column& column) { return is_known(column, report.points); });
+  }
+  if (report.scene.operating_point.drive == Drive::rollers) {
+    std::ranges::copy_if(hose_columns, std::back_inserter(shown),
                          [&](const Column& column) { return is_known(column, report.points); });
   }
   for (const Column& column : shown) {
@@ -216,6 +233,16 @@ nlohmann::ordered_json point_json(const CurvePoint& point) {
                      {"efficiency_percent", finite_or_null(point.efficiency_percent)}};
   entry["speed_max_cm_per_s"] = finite_or_null(point.speed_max_cm_per_s);
   entry["clearance_min_mm"] = finite_or_null(point.clearance_min_mm);
+  if (std::isfinite(point.torque_N_m)) {
+    entry["rollers"] = {{"flow_per_turn_ml", finite_or_null(point.flow_per_turn_ml)},
+                        {"ripple_l_per_min", finite_or_null(point.ripple_l_per_min)},
+                        {"leak_l_per_min", finite_or_null(point.leak_l_per_min)},
+                        {"torque_N_m", point.torque_N_m},
+                        {"torque_max_N_m", finite_or_null(point.torque_max_N_m)},
+                        {"force_max_N", finite_or_null(point.roller_force_max_N)},
+                        {"outlet_pressure_min_mmHg", finite_or_null(point.outlet_pressure_min_mmHg)},
+                        {"outlet_pressure_max_mmHg", finite_or_null(point.outlet_pressure_max_mmHg)}};
+  }
   if (std::isfinite(point.scalar_stress_max_Pa)) {
     entry["blood"] = {{"haemolysis_percent", finite_or_null(point.haemolysis_percent)},
                       {"scalar_stress_max_Pa", point.scalar_stress_max_Pa},
@@ -270,7 +297,7 @@ nlohmann::ordered_json report_json(const CurveReport& report) {
   result["frequency_Hz"] = scene.operating_point.frequency;
   if (scene.operating_point.drive == Drive::voltage) {
     result["voltage_V"] = scene.operating_point.voltage;
-  } else {
+  } else if (scene.operating_point.drive == Drive::stroke) {
     result["stroke_mm"] = stroke_mm(scene);
   }
   result["seconds"] = report.seconds;

@@ -6,6 +6,7 @@
 
 #include "apps/output/plots.hpp"
 #include "apps/output/text_table.hpp"
+#include "fom/scene/operating_point.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
@@ -74,12 +75,15 @@ void plot_state(const std::filesystem::path& folder, const LevelView& view, cons
   const auto field_on = [&](std::span<const std::array<int, 3>> triangles, const std::vector<double>& values,
                             const char* label) {
     FieldOnTriangles field{mesh.points, triangles, values, label};
-    if (view.rows.per_depth) field.axes = {"x (cm)", "y (cm)"};
+    if (view.rows.per_depth || view.rows.hose) field.axes = {"x (cm)", "y (cm)"};
     return field;
   };
   plot_field(folder / "speed.png", title, field_on(cells, speed, "speed (cm/s)"), outlines);
   plot_field(folder / "pressure.png", title, field_on(cells, pressure_mmHg, "pressure (mmHg)"), outlines);
 
+  if (view.rows.hose) {
+    return;
+  }
   const Window window = membrane_window(view.membrane_box);
   std::vector<std::array<int, 3>> near;
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(near), [&](const auto& cell) {
@@ -174,6 +178,50 @@ void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, co
   plot_lines(folder / "flow.png", title, "time (s)", "flow (l/min)", lines);
 }
 
+/// Flow, torque and outlet pressure over the last two turns, and the hose as the run left it.
+void plot_hose(const RunDirectory& run, const Scene& scene, const State& state) {
+  const auto& point = scene.operating_point;
+  const std::string title = scene.name + ": " + setting_text(point) + ", head " +
+                            plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
+  plot_state(run.folder(), run.view(), state, title);
+
+  const auto turns = [&] {
+    std::vector<double> result;
+    for (const int step : run.series().steps) {
+      result.push_back(static_cast<double>(step) / scene.time.steps_per_period);
+    }
+    return result;
+  }();
+  const std::size_t drawn = std::min(turns.size(), 2 * static_cast<std::size_t>(scene.time.steps_per_period));
+  const auto last = [&](const std::vector<double>& values) { return std::span(values).last(drawn); };
+  const auto plot = [&](const char* picture, const std::string& label,
+                        std::span<const std::pair<const char*, const char*>> names) {
+    std::vector<std::vector<double>> values;
+    std::vector<Line> lines;
+    for (const auto& [name, legend] : names) {
+      values.push_back(column(run.series(), name));
+    }
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (!values[k].empty()) {
+        lines.push_back({names[k].second, last(turns), last(values[k])});
+      }
+    }
+    if (!lines.empty()) {
+      plot_lines(run.folder() / picture, title, "turns", label, lines);
+    }
+  };
+  using Names = std::pair<const char*, const char*>;
+  plot(
+      "flow.png", "flow (l/min)",
+      std::array<Names, 3>{
+          Names{"outflow_l_per_min", "outflow"}, {"inflow_l_per_min", "inflow"}, {"leak_l_per_min", "leak"}});
+  plot("torque.png", "torque (N m)", std::array<Names, 1>{Names{"torque_N_m", "torque of the rotor"}});
+  plot("outlet_pressure.png", "pressure (mmHg)",
+       std::array<Names, 1>{Names{"outlet_pressure_mmHg", "behind the last squeezed place"}});
+  plot("roller_force.png", "force (N)",
+       std::array<Names, 1>{Names{"roller_force_N", "on the roller that carries most"}});
+}
+
 } // namespace
 
 void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
@@ -182,6 +230,10 @@ void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
     return;
   }
   const auto& point = scene.operating_point;
+  if (scene.machine == Machine::peristaltic_pump) {
+    plot_hose(run, scene, state);
+    return;
+  }
   const std::string title = scene.name + ": " + plain_number(point.frequency) + " Hz, stroke " +
                             plain_number(units::length_to_mm(point.stroke)) + " mm, head " +
                             plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";

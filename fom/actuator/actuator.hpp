@@ -5,8 +5,9 @@ namespace undula::fom {
 
 /// What the holder is driven with.
 enum class Drive {
-  stroke, ///< its motion is imposed
-  voltage ///< the actuator's force; the motion is an answer
+  stroke,  ///< its motion is imposed
+  voltage, ///< the actuator's force; the motion is an answer
+  rollers  ///< no holder: rollers on a rotor that turns at the frequency of the operating point
 };
 
 /// The equation of the holder (displacement w, cm) is

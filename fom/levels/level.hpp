@@ -2,7 +2,7 @@
 // states:
 //
 //   Level          a curve of heads: any model
-//   MarchingLevel  a level that marches states in time: thin gaps, finite elements of any coupling
+//   MarchingLevel  a level that marches states in time: thin gaps, hoses, finite elements of any coupling
 //   Marcher        one march at one operating point
 //
 // march.hpp holds the loop over steps, periodic_run.hpp what is made of it.
@@ -90,9 +90,9 @@ public:
                                 const std::function<void()>& on_point = {}) override;
 };
 
-/// Prepares the level that the scene states: thin gaps, or finite elements. Phases "mesh", "cut", "assemble"
-/// or "coefficients". Collective over `comm`. Thin gaps are small: every rank prepares and marches the same,
-/// so that all of them hold the state.
+/// Prepares the level that the scene states: thin gaps, a hose, or finite elements. Phases "mesh", "cut",
+/// "assemble" or "coefficients". Collective over `comm`. Thin gaps and hoses are small: every rank prepares
+/// and marches the same, so that all of them hold the state.
 std::unique_ptr<MarchingLevel> prepare_level(const Scene& scene, MPI_Comm comm, PhaseTimer& timer);
 
 } // namespace undula::fom

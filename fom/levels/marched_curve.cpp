@@ -127,15 +127,19 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   }
   point.power_mW = mean("hydraulic_power_mW");
   point.holder_power_mW = mean("holder_power_mW");
+  const double torque = mean("torque_N_m");
+  const bool rollers = std::isfinite(torque);
   // Phasors: a sin + b cos is the imaginary part of (a + i b) exp(i phase).
   const std::complex<double> holder(mean("holder_sine_mm"), mean("holder_cosine_mm"));
   const std::complex<double> force(mean("holder_force_sine_N"), mean("holder_force_cosine_N"));
-  point.stroke_mm = std::abs(holder);
   const std::complex<double> second(mean("holder_sine_2f_mm"), mean("holder_cosine_2f_mm")),
       third(mean("holder_sine_3f_mm"), mean("holder_cosine_3f_mm"));
-  point.stroke_2f_mm = std::abs(second);
-  point.stroke_3f_mm = std::abs(third);
-  point.offset_mm = mean("holder_mm");
+  if (!rollers) {
+    point.stroke_mm = std::abs(holder);
+    point.stroke_2f_mm = std::abs(second);
+    point.stroke_3f_mm = std::abs(third);
+    point.offset_mm = mean("holder_mm");
+  }
   if (point.stroke_mm > 0) {
     constexpr double degrees = 180 / std::numbers::pi;
     point.phase_degrees = -std::arg(holder) * degrees;
@@ -155,6 +159,18 @@ CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
         haemolysis_percent(run.blood, rate, units::flow_from_l_per_min(point.flow_l_per_min));
     point.scalar_stress_max_Pa = std::ranges::max(last_of(cycles.maximum, "scalar_stress_max_Pa"));
     point.stressed_volume_mm3 = mean("stressed_volume_mm3");
+  }
+  if (rollers) {
+    const auto outflow_low = last_of(cycles.minimum, "outflow_l_per_min"),
+               outflow_high = last_of(cycles.maximum, "outflow_l_per_min");
+    point.flow_per_turn_ml = units::flow_from_l_per_min(point.flow_l_per_min) * run.period; // 1 ml is 1 cm^3
+    point.ripple_l_per_min = std::ranges::max(outflow_high) - std::ranges::min(outflow_low);
+    point.leak_l_per_min = mean("leak_l_per_min");
+    point.torque_N_m = torque;
+    point.torque_max_N_m = std::ranges::max(last_of(cycles.maximum, "torque_N_m"));
+    point.roller_force_max_N = std::ranges::max(last_of(cycles.maximum, "roller_force_N"));
+    point.outlet_pressure_min_mmHg = std::ranges::min(last_of(cycles.minimum, "outlet_pressure_mmHg"));
+    point.outlet_pressure_max_mmHg = std::ranges::max(last_of(cycles.maximum, "outlet_pressure_mmHg"));
   }
   point.film_unresolved_percent = 100 * mean("film_unresolved");
   if (std::isfinite(point.film_unresolved_percent))

@@ -14,6 +14,8 @@
 namespace undula::fom {
 namespace {
 
+constexpr double dyn_cm_per_N_m = 1e7;
+
 /// 1 where the narrowest film has too few elements, else 0; NaN where that is not known.
 double film_is_unresolved(const Observation& seen) {
   return std::isnan(seen.film_elements) ? seen.film_elements : !film_is_resolved(seen.film_elements);
@@ -26,6 +28,12 @@ double force_of(const Observation& seen) { return units::force_to_N(seen.holder.
 template <double BloodStress::*member>
 double blood_of(const Observation& seen) {
   return seen.blood ? (*seen.blood).*member : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// A number of the hose; NaN of other pumps.
+template <double HoseObservation::*member>
+double hose_of(const Observation& seen) {
+  return seen.hose ? (*seen.hose).*member : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// What is averaged over a period, by the observation and the phase of the drive. The means of a signal times
@@ -65,6 +73,16 @@ constexpr Column columns[] = {
      }},
     {"damage_rate_cm3_per_s",
      [](const Observation& o, double) { return blood_of<&BloodStress::damage_rate>(o); }},
+    {"torque_N_m",
+     [](const Observation& o, double) { return hose_of<&HoseObservation::torque>(o) / dyn_cm_per_N_m; }},
+    {"leak_l_per_min", [](const Observation& o,
+                          double) { return units::flow_to_l_per_min(hose_of<&HoseObservation::leak>(o)); }},
+    {"outlet_pressure_mmHg",
+     [](const Observation& o, double) {
+       return units::pressure_to_mmHg(hose_of<&HoseObservation::outlet_pressure>(o));
+     }},
+    {"roller_force_N", [](const Observation& o,
+                          double) { return units::force_to_N(hose_of<&HoseObservation::roller_force>(o)); }},
 };
 
 /// Steps are counted from the first of this march.
@@ -133,6 +151,7 @@ PeriodicRun march_until_periodic(MarchingLevel& level, const Scene& scene, State
   }
   run.cycles = summarise_cycles(series, steps);
   run.blood = scene.blood;
+  run.period = 1 / scene.operating_point.frequency;
   for (const auto& [phase, entry] : timer.records()) run.seconds[phase] = entry.seconds;
   run.seconds["total"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return run;

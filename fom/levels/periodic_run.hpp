@@ -24,6 +24,7 @@ struct PeriodicRun {
   CycleMeans cycles;                     ///< of all periods, numbered from 1, see cycle_columns
   int plain_periods = 0;                 ///< the last ones, that follow one another without a jump
   BloodDamageLaw blood;                  ///< of the scene
+  double period = 0;                     ///< s
   std::map<std::string, double> seconds; ///< wall time by phase, "total" among them
 };
 

@@ -7,6 +7,7 @@
 #include "fom/coupling/motion_report.hpp"
 #include "fom/output/blood_stress.hpp"
 #include "fom/output/holder_observation.hpp"
+#include "fom/output/hose_observation.hpp"
 #include "fom/scene/general_observables.hpp"
 #include "fom/space/boundary_walls.hpp"
 #include "geometry/mesh/segments.hpp"
@@ -44,10 +45,11 @@ struct Observation {
   double film_elements = std::numeric_limits<double>::quiet_NaN();
   double tip_displacement = 0; ///< cm, axial, innermost probe
   HolderObservation holder;
-  MotionReport motion;         ///< of couplings that move the domain
-  int solves = 0;              ///< linear solves of the step
-  double convection_error = 0; ///< TimeStepper::convection_error, of the last part of the step
-  std::vector<double> general; ///< by GeneralObservables::columns, cgs
+  std::optional<HoseObservation> hose; ///< of peristaltic pumps
+  MotionReport motion;                 ///< of couplings that move the domain
+  int solves = 0;                      ///< linear solves of the step
+  double convection_error = 0;         ///< TimeStepper::convection_error, of the last part of the step
+  std::vector<double> general;         ///< by GeneralObservables::columns, cgs
 };
 
 /// A film with fewer elements across it is not resolved: docs/moving.md.

@@ -46,9 +46,10 @@ std::optional<RunThere> run_in(const std::filesystem::path& folder) {
 
 /// Files that --force would have to take for its own, and could not know to be.
 void refuse_foreign_files(const std::filesystem::path& folder) {
-  if (std::filesystem::exists(folder / "campaign.h5"))
-    throw InputError("the output folder is that of a campaign", "\"campaign.h5\"",
-                     "a folder that `undula solve` made, or a new one", folder.string());
+  for (const char* noun : {"campaign", "study"})
+    if (const std::string stamp = std::string(noun) + ".h5"; std::filesystem::exists(folder / stamp))
+      throw InputError(std::string("the output folder is that of a ") + noun, '"' + stamp + '"',
+                       "a folder that `undula solve` made, or a new one", folder.string());
   const auto files = run_files(folder);
   if (files.empty()) return;
   throw InputError("the output folder holds files that no run of Undula can be shown to have written",
@@ -170,7 +171,7 @@ RunDirectory::RunDirectory(std::filesystem::path folder, LevelView view, const S
                            : TimeSeriesFile::go_on(folder_ / name, std::move(columns), state.step);
   };
   series_.emplace(table("time_series.csv", observation_columns(view_.rows)));
-  if (view_.rows.pump) membrane_.emplace(table("membrane.csv", probe_columns(view_.probes)));
+  if (!view_.probes.radius.empty()) membrane_.emplace(table("membrane.csv", probe_columns(view_.probes)));
   if (scene_.output.fields_every == 0) return;
   auto origin = provenance_;
   origin["scene"] = stamp_.text;
@@ -252,6 +253,7 @@ std::filesystem::path RunDirectory::save_state(const State& state) {
 
 void RunDirectory::write_summaries() const {
   write_cycle_means(summarise_cycles(series(), scene_.time.steps_per_period), folder_ / "cycle_means.csv");
+  if (!membrane_) return;
   const auto envelope = summarise_cycles(membrane(), scene_.time.steps_per_period);
   const auto& radius = view_.probes.radius;
   const std::size_t last = (envelope.periods.size() - 1) * radius.size();

@@ -4,7 +4,8 @@
 //   statistics.csv        of scenes that state their problem: last value, mean, amplitude and frequency of
 //   every
 //                         column; such scenes have none of the next three files
-//   membrane.csv          axial displacement of the membrane at its probes, one row per step
+//   membrane.csv          axial displacement of the membrane at its probes, one row per step; not of a
+//   peristaltic pump, nor envelope.csv
 //   cycle_means.csv       mean, lowest and highest of every column of time_series.csv, one row per period
 //   envelope.csv          radius_mm, low_mm, high_mm: reach of the membrane over the last complete period
 //   wall_shear.csv        mean and greatest shear of every wall element over the last complete period
@@ -84,7 +85,7 @@ public:
   const TimeSeries& series() const { return series_->table(); }
   const TimeSeries& membrane() const {
     return membrane_->table();
-  } ///< cm -> mm, one column per probe; pumps only
+  } ///< cm -> mm, one column per probe; pumps with a membrane only
 
 private:
   void go_on_from_checkpoint(State& state);

@@ -20,8 +20,9 @@ constexpr std::array<std::string_view, 8> tables = {"time_series.csv", "wall_she
                                                     "cycle_means.csv", "envelope.csv",     "statistics.csv",
                                                     "timing.json",     resolved_scene_name};
 constexpr std::array<std::string_view, 2> field_series = {"fluid", "solids"};
-constexpr std::array<std::string_view, 7> pictures = {"speed", "pressure", "speed_gap", "membrane",
-                                                      "flow",  "holder",   "wall_shear"};
+constexpr std::array<std::string_view, 10> pictures = {
+    "speed",  "pressure",   "speed_gap", "membrane",        "flow",
+    "holder", "wall_shear", "torque",    "outlet_pressure", "roller_force"};
 constexpr std::array<std::string_view, 4> picture_endings = {".png", ".gp", ".dat", ".png.tmp"};
 constexpr std::string_view partial = ".partial";
 

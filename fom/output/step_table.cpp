@@ -1,6 +1,7 @@
 #include "fom/output/step_table.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "rom/base/units.hpp"
 
@@ -9,11 +10,13 @@ namespace {
 
 constexpr double uJ_per_erg = 0.1;
 constexpr double mW_per_uJ_per_s = 1e-3;
+constexpr double dyn_cm_per_N_m = 1e7;
 
 /// Which scenes have a column: all, those of pumps, those that state a problem, those whose domain moves,
 /// those whose solids move through the elements, those driven by a voltage, pumps
-/// whose fluid has a resolved stress, finite elements.
-enum class In { all, pump, general, moving, recut, voltage, blood, elements };
+/// whose fluid has a resolved stress, finite elements, pumps with a membrane, with a hose, with a hose of a
+/// stated modulus.
+enum class In { all, pump, general, moving, recut, voltage, blood, elements, membrane, hose, hose_force };
 
 struct Column {
   const char* name;
@@ -58,9 +61,17 @@ constexpr Column columns[] = {
     {"damage_rate_cm3_per_s", [](const Observation& o) { return o.blood->damage_rate; }, In::blood},
     {"clearance_min_mm", [](const Observation& o) { return units::length_to_mm(o.clearance_min); }},
     {"tip_displacement_mm", [](const Observation& o) { return units::length_to_mm(o.tip_displacement); },
-     In::pump},
+     In::membrane},
     {"holder_displacement_mm",
-     [](const Observation& o) { return units::length_to_mm(o.holder.displacement); }, In::pump},
+     [](const Observation& o) { return units::length_to_mm(o.holder.displacement); }, In::membrane},
+    {"roller_angle_deg", [](const Observation& o) { return o.hose->angle * 180 / std::numbers::pi; },
+     In::hose},
+    {"torque_N_m", [](const Observation& o) { return o.hose->torque / dyn_cm_per_N_m; }, In::hose},
+    {"leak_l_per_min", [](const Observation& o) { return units::flow_to_l_per_min(o.hose->leak); }, In::hose},
+    {"outlet_pressure_mmHg",
+     [](const Observation& o) { return units::pressure_to_mmHg(o.hose->outlet_pressure); }, In::hose},
+    {"roller_force_N", [](const Observation& o) { return units::force_to_N(o.hose->roller_force); },
+     In::hose_force},
     {"holder_velocity_cm_per_s", [](const Observation& o) { return o.holder.velocity; }, In::voltage},
     {"holder_force_N", [](const Observation& o) { return units::force_to_N(o.holder.force); }, In::voltage},
     {"voltage_V", [](const Observation& o) { return o.holder.voltage; }, In::voltage},
@@ -104,6 +115,12 @@ bool has(const RowLayout& layout, const Column& column) {
       return layout.voltage;
     case In::elements:
       return layout.elements;
+    case In::membrane:
+      return layout.pump && !layout.hose;
+    case In::hose:
+      return layout.hose;
+    case In::hose_force:
+      return layout.hose_force;
     case In::all:
       break;
   }
@@ -203,6 +220,18 @@ std::vector<PeriodSummary> summarise_periods(const TimeSeries& table, int steps_
       for (std::size_t row = begin; row < begin + length; ++row)
         thin += !film_is_resolved(value(row, "film_elements"));
       period.film_unresolved_percent = 100.0 * thin / steps_per_period;
+    }
+    if (value.has("torque_N_m")) {
+      TurnSummary turn;
+      turn.volume_ml = units::flow_from_l_per_min(period.outflow_l_per_min) * duration; // 1 ml is 1 cm^3
+      turn.leak_l_per_min = mean("leak_l_per_min");
+      turn.torque_N_m = mean("torque_N_m");
+      turn.torque_max_N_m = extremes("torque_N_m").second;
+      const auto [least, most] = extremes("outlet_pressure_mmHg");
+      turn.outlet_pressure_min_mmHg = least;
+      turn.outlet_pressure_max_mmHg = most;
+      if (value.has("roller_force_N")) turn.roller_force_max_N = extremes("roller_force_N").second;
+      period.turn = turn;
     }
     periods.push_back(period);
   }

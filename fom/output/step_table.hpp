@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "fom/output/observables.hpp"
 #include "fom/output/time_series.hpp"
@@ -15,9 +16,11 @@ struct RowLayout {
   bool moving = false;    ///< the fluid's domain moves
   bool recut = false;     ///< solids move through the elements
   std::vector<GeneralColumn> general;
-  bool blood = false;    ///< a pump whose fluid has a resolved stress
-  bool voltage = false;  ///< the holder is driven by a voltage
-  bool elements = false; ///< finite elements, whose scheme's own loss is known
+  bool blood = false;      ///< a pump whose fluid has a resolved stress
+  bool voltage = false;    ///< the holder is driven by a voltage
+  bool hose = false;       ///< a peristaltic pump: rollers in place of membrane and holder
+  bool hose_force = false; ///< one whose hose has a stated modulus
+  bool elements = false;   ///< finite elements, whose scheme's own loss is known
 };
 
 /// Columns of time_series.csv, without "step".
@@ -25,6 +28,15 @@ std::vector<std::string> observation_columns(const RowLayout& layout = {});
 
 /// One value per column.
 std::vector<double> observation_row(const Observation& seen, const RowLayout& layout = {});
+
+/// What one turn of a peristaltic pump comes to besides; see hose_observation.hpp.
+struct TurnSummary {
+  double volume_ml = 0;                      ///< out of the outlet
+  double leak_l_per_min = 0, torque_N_m = 0; ///< means
+  double torque_max_N_m = 0;
+  double outlet_pressure_min_mmHg = 0, outlet_pressure_max_mmHg = 0;
+  double roller_force_max_N = std::numeric_limits<double>::quiet_NaN(); ///< NaN without a modulus
+};
 
 /// What one period comes to. Flows in l/min.
 struct PeriodSummary {
@@ -47,6 +59,7 @@ struct PeriodSummary {
   /// As in CurvePoint; NaN where solids do not move through the elements.
   double film_elements_min = std::numeric_limits<double>::quiet_NaN(),
          film_unresolved_percent = std::numeric_limits<double>::quiet_NaN();
+  std::optional<TurnSummary> turn; ///< of peristaltic pumps
 };
 
 /// The complete periods of a pump's table with observation_columns.

@@ -3,7 +3,7 @@
 
 namespace undula::fom {
 
-enum class Space { plane, axisymmetric, thin_gap };
+enum class Space { plane, axisymmetric, thin_gap, long_wave };
 
 enum class FlowModel { stokes, navier_stokes };
 

@@ -36,4 +36,11 @@ void require_pump(const Scene& scene, const std::string& command) {
                    scene.file.string());
 }
 
+void require_wave_pump(const Scene& scene, const std::string& command) {
+  require_pump(scene, command);
+  if (scene.machine == Machine::wave_pump) return;
+  throw InputError(command + " needs a scene of a wave pump", "machine = \"peristaltic-pump\"",
+                   "machine = \"wave-pump\"; undula solve, hq and study take any pump", scene.file.string());
+}
+
 } // namespace undula::fom

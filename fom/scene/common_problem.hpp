@@ -23,4 +23,7 @@ std::vector<RefinementBox<2>> refinement_boxes(const ProblemStatement& problem);
 /// own.
 void require_pump(const Scene& scene, const std::string& command);
 
+/// The same where it needs a wave pump.
+void require_wave_pump(const Scene& scene, const std::string& command);
+
 } // namespace undula::fom

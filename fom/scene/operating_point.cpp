@@ -25,7 +25,9 @@ double holder_displacement(const Scene& scene, double t) {
 }
 
 std::string setting_text(const OperatingPoint& point) {
-  return plain_number(point.frequency) + " Hz, " +
+  const std::string frequency = plain_number(point.frequency) + " Hz";
+  if (point.drive == Drive::rollers) return frequency;
+  return frequency + ", " +
          (point.drive == Drive::voltage
               ? plain_number(point.voltage) + " V"
               : "stroke " + plain_number(units::length_to_mm(point.stroke)) + " mm");

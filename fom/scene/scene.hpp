@@ -17,6 +17,12 @@
 
 namespace undula::fom {
 
+/// What a scene of a pump is of.
+enum class Machine {
+  wave_pump,       ///< a membrane between two flanges
+  peristaltic_pump ///< a hose on a track, squeezed by rollers
+};
+
 enum class Extent { full };
 
 enum class Interface {
@@ -43,7 +49,7 @@ enum class PressureStability {
 };
 
 struct OperatingPoint {
-  double frequency = 0;    ///< Hz
+  double frequency = 0;    ///< Hz, of the actuator or of the rotor
   double stroke = 0;       ///< cm, amplitude Phi of the holder
   double head = 0;         ///< dyn/cm^2, outlet pressure minus inlet pressure
   double stroke_scale = 1; ///< the holder moves by stroke_scale * stroke
@@ -78,6 +84,28 @@ struct ThinGapSettings {
   double momentum_factor = 0;   ///< of the velocity profile: 1 plug, 6/5 parabola
   GapFriction friction = GapFriction::poiseuille;
   double newton_tolerance = 0; ///< change of the unknowns at which Newton ends, relative to their scales
+};
+
+/// The hose of a peristaltic pump.
+struct HoseSettings {
+  double bore = 0;            ///< cm, inner diameter
+  double wall = 0;            ///< cm, thickness
+  double young = 0;           ///< dyn/cm^2; 0: not known, and no force of the hose
+  double poisson = 0;         ///< -
+  double inlet_length = 0;    ///< cm, from the inlet to the begin of the track
+  double outlet_length = 0;   ///< cm, from the end of the track to the outlet
+  double throat_recovery = 0; ///< part of the kinetic energy that returns to pressure behind a squeezed place
+  double entry_loss = 0;      ///< lost where the flow enters the hose, in parts of the kinetic energy
+};
+
+/// Its track and its rollers, evenly spaced on a rotor.
+struct RollerSettings {
+  int count = 0;
+  double radius = 0;       ///< cm
+  double track_radius = 0; ///< cm, of the frame's wall
+  double track_angle = 0;  ///< rad, over which the track is concentric with the rotor
+  double occlusion = 0;    ///< 1 - height of the bore under a roller / bore
+  double film = 0;         ///< cm, least height of the bore under a roller
 };
 
 /// An input known within bounds: half the width of the interval that holds it with 95 % probability.
@@ -130,6 +158,7 @@ struct Scene {
   double clearance_scale = 1; ///< of the clearances between membrane and flanges in the profile
   double rim_gap_scale = 1;   ///< of the gap between the membrane's rim and the housing in the profile
   ProblemStatement problem;   ///< in place of a pump
+  Machine machine = Machine::wave_pump;
   Space space = Space::axisymmetric;
   int velocity_order = 1; ///< polynomial degree of the fluid's velocity
   Extent extent = Extent::full;
@@ -145,6 +174,8 @@ struct Scene {
   double tip_radius = 0;   ///< cm, of the corners of the membrane's tip; 0: as in the profile
   double rim_radius = 0;   ///< cm, of the corners of its rim; 0: as in the profile
   double clamp_radius = 0; ///< cm; motion of the membrane is imposed for r >= clamp_radius
+  HoseSettings hose;
+  RollerSettings rollers;
   OperatingPoint operating_point;
   ActuatorSettings actuator; ///< of Drive::voltage
   MeshSizes mesh;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fom/scene/hose_checks.hpp"
 #include "fom/scene/key_place.hpp"
 #include "fom/scene/scene_table.hpp"
 #include "fom/scene/scene_value.hpp"
@@ -196,6 +197,16 @@ void check_consistency(const Scene& scene, const std::string& where) {
     check_contact(scene, where);
     return;
   }
+  if (scene.machine == Machine::peristaltic_pump) {
+    check_peristaltic_pump(scene, where);
+    check_time(scene, where);
+    return;
+  }
+  if (scene.space == Space::long_wave) {
+    throw InputError("the space does not go with the machine", "space = \"long-wave\" for a wave pump",
+                     "machine = \"peristaltic-pump\", or another space",
+                     place_of_key(scene, "model.space", where));
+  }
   check_geometry(scene, where);
   check_clamp(scene, where);
   check_corners(scene, where);
@@ -208,14 +219,15 @@ void check_consistency(const Scene& scene, const std::string& where) {
 
 void check_training(const Scene& scene, const std::string& where) {
   const TrainingPlan& plan = scene.training;
+  check_bounds("head (mmHg)", units::pressure_to_mmHg(plan.head_low), units::pressure_to_mmHg(plan.head_high),
+               where);
+  if (scene.machine != Machine::wave_pump) return; // the heads of its curve are all that it states
   check_bounds("frequency (Hz)", plan.frequency_low, plan.frequency_high, where);
   if (scene.operating_point.drive == Drive::voltage)
     check_bounds("voltage (V)", plan.voltage_low, plan.voltage_high, where);
   else
     check_bounds("stroke (mm)", units::length_to_mm(plan.stroke_low), units::length_to_mm(plan.stroke_high),
                  where);
-  check_bounds("head (mmHg)", units::pressure_to_mmHg(plan.head_low), units::pressure_to_mmHg(plan.head_high),
-               where);
   if (plan.model == ModelKind::emulator) return; // it keeps no snapshots
   if (scene.time.steps_per_period % plan.snapshots_per_period != 0) {
     throw InputError("snapshots do not fall on time steps",

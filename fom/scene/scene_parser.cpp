@@ -222,9 +222,7 @@ private:
   void check_scope(const SceneKey& key, const std::string& seen, const std::string& where) const {
     if (!key.applies_to(scene)) {
       throw InputError("key " + in_quotes(key.path) + " does not apply to this scene", seen,
-                       key.scope == Scope::pump ? "scenes of a pump, without [domain] and [body.NAME]"
-                                                : "scenes with [domain] or [body.NAME]",
-                       where);
+                       scope_text(key.scope), where);
     }
   }
 
@@ -521,6 +519,9 @@ Scene parse_scene(std::string_view text, const std::string& origin_name, const s
     parser.read_override(override_text);
   }
   parser.fill_defaults(origin);
+  if (parser.scene.machine == Machine::peristaltic_pump) {
+    parser.scene.operating_point.drive = Drive::rollers;
+  }
   check_consistency(parser.scene, origin_name);
   // Here, so that the resolved scene says it and a run that is prolonged beyond what it was derived from is
   // told.

@@ -42,9 +42,7 @@ constexpr const char* table_head = "\n| key | accepts | default | meaning |\n|--
 
 std::string row(const SceneKey& key) {
   const bool entry = static_cast<bool>(entry_of(key.path));
-  const char* scope = key.scope == Scope::any || entry ? ""
-                      : key.scope == Scope::pump       ? "(pump) "
-                                                       : "(general) ";
+  const std::string mark = entry ? "" : scope_mark(key.scope), scope = mark + (mark.empty() ? "" : " ");
   return "| `" + key.leaf() + "`" + (key.shapes_state ? "" : " *") + " | " + cell(allowed_text(key)) + " | " +
          cell(default_cell(key)) + " | " + scope + cell(key.help + planned_text(key)) + " |\n";
 }
@@ -75,9 +73,9 @@ std::string scene_reference() {
       "- Every output records the resolved scene. Keys marked * may change when a run goes on from a "
       "checkpoint.\n";
   page +=
-      "- Keys marked (pump) belong to scenes of a pump, whose geometry is a profile or meshes; keys marked "
-      "(general) "
-      "to scenes with\n  `[domain]` or `[body.NAME]`, which state any other plane or axisymmetric problem.\n"
+      "- Keys marked (pump) belong to scenes of any pump, keys marked (wave pump) or (peristaltic pump) to "
+      "those\n  of one (`model.machine`), keys marked (general) to scenes with `[domain]` or `[body.NAME]`, "
+      "which state any other\n  plane or axisymmetric problem.\n"
       "- Expressions are arithmetic in `x`, `y` (plane) or `r`, `z` (axisymmetric) in mm, `t` in s, `pi`, "
       "the\n"
       "  names of `[constants]`, and `ramp(t, T)`, which rises smoothly from 0 at t = 0 to 1 at t = T; with "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numbers>
 #include <type_traits>
 
 #include "fom/problem/default_weights.hpp"
@@ -65,11 +66,19 @@ std::vector<SceneKey> model_keys() {
   return {
       {"name", "", "label of the computation, used in file names and plots", leaves_state,
        TextKey{FIELD(name)}},
+      // Told apart by its other keys: old records stay valid.
+      {"model.machine", "", "what the pump is; `peristaltic-pump`: a hose on a track, squeezed by rollers",
+       leaves_state,
+       choice<FIELD(machine)>(
+           {name("wave-pump", Machine::wave_pump), name("peristaltic-pump", Machine::peristaltic_pump)}, {},
+           "wave-pump"),
+       Scope::pump},
       {"model.space", "",
-       "space the equations are solved in; `thin-gap`: radial flow in the two gaps along an annular plate",
+       "space the equations are solved in; `thin-gap`: radial flow in the two gaps along an annular plate; "
+       "`long-wave`: flow along a hose that rollers squeeze",
        shapes_state,
        choice<FIELD(space)>({name("axisymmetric", Space::axisymmetric), name("plane", Space::plane),
-                             name("thin-gap", Space::thin_gap)},
+                             name("thin-gap", Space::thin_gap), name("long-wave", Space::long_wave)},
                             {"3d"}, "axisymmetric")},
       {"space.order", "",
        "polynomial degree of the fluid's velocity; 2: quadratic, with a linear pressure, for the couplings "
@@ -157,8 +166,9 @@ std::vector<SceneKey> pump_keys() {
       {"membrane.clamp_radius_mm", "mm",
        "the motion of the membrane is imposed from this radius outwards; 0: the radius in the profile",
        shapes_state, RealKey{FIELD(clamp_radius), cm_per_mm, from_to(0, 1e4), 0.0}},
-      {"operating_point.frequency_Hz", "Hz", "frequency f of the actuator", shapes_state,
-       RealKey{FIELD(operating_point.frequency), 1, above_to(0, 1e5), {}}},
+      {"operating_point.frequency_Hz", "Hz",
+       "frequency f of the actuator; of a peristaltic pump the turns of its rotor per second", shapes_state,
+       RealKey{FIELD(operating_point.frequency), 1, above_to(0, 1e5), {}}, Scope::pump},
       {"operating_point.drive", "",
        "what the holder is driven with; `stroke`: its motion is imposed; `voltage`: the force of the "
        "[actuator], the motion is an answer",
@@ -174,7 +184,47 @@ std::vector<SceneKey> pump_keys() {
        "factor on the stroke: what the holder does of what the actuator is said to do", shapes_state,
        RealKey{FIELD(operating_point.stroke_scale), 1, from_to(0, 10), 1.0}},
       {"operating_point.head_mmHg", "mmHg", "outlet pressure minus inlet pressure", shapes_state,
-       RealKey{FIELD(operating_point.head), mmHg, from_to(-1e4, 1e4), {}}},
+       RealKey{FIELD(operating_point.head), mmHg, from_to(-1e4, 1e4), {}}, Scope::pump},
+  };
+}
+
+std::vector<SceneKey> hose_keys() {
+  constexpr double radians = std::numbers::pi / 180;
+  return {
+      {"hose.bore_mm", "mm", "inner diameter of the hose", shapes_state,
+       RealKey{FIELD(hose.bore), cm_per_mm, above_to(0, 1e3), {}}},
+      {"hose.wall_mm", "mm", "thickness of its wall", shapes_state,
+       RealKey{FIELD(hose.wall), cm_per_mm, above_to(0, 1e3), {}}},
+      {"hose.young_dyn_per_cm2", "dyn_per_cm2",
+       "Young's modulus of the wall, for the force on the rollers; 0: not known", shapes_state,
+       RealKey{FIELD(hose.young), 1, from_to(0, 1e14), 0.0}},
+      {"hose.poisson", "", "Poisson's ratio of the wall", shapes_state,
+       RealKey{FIELD(hose.poisson), 1, between(-1, 0.5), 0.48}},
+      {"hose.inlet_length_mm", "mm", "length of the hose from the inlet to the begin of the track",
+       shapes_state, RealKey{FIELD(hose.inlet_length), cm_per_mm, above_to(0, 1e6), {}}},
+      {"hose.outlet_length_mm", "mm", "length of the hose from the end of the track to the outlet",
+       shapes_state, RealKey{FIELD(hose.outlet_length), cm_per_mm, above_to(0, 1e6), {}}},
+      {"hose.throat_recovery", "",
+       "part of the kinetic energy that returns to pressure where the flow leaves a squeezed place; 1: "
+       "Bernoulli",
+       shapes_state, RealKey{FIELD(hose.throat_recovery), 1, from_to(0, 1), 0.0}},
+      {"hose.entry_loss", "", "kinetic energy lost where the flow enters the hose, as a part of it",
+       shapes_state, RealKey{FIELD(hose.entry_loss), 1, from_to(0, 10), 0.5}},
+      {"rollers.count", "", "rollers, evenly spaced on the rotor", shapes_state,
+       IntegerKey{FIELD(rollers.count), 1, 100, std::nullopt}},
+      {"rollers.radius_mm", "mm", "radius of a roller", shapes_state,
+       RealKey{FIELD(rollers.radius), cm_per_mm, above_to(0, 1e4), {}}},
+      {"rollers.track_radius_mm", "mm", "radius of the wall that the hose lies against", shapes_state,
+       RealKey{FIELD(rollers.track_radius), cm_per_mm, above_to(0, 1e5), {}}},
+      {"rollers.track_angle_deg", "deg",
+       "angle over which that wall is concentric with the rotor; it ends in straight tangents", shapes_state,
+       RealKey{FIELD(rollers.track_angle), radians, above_to(0, 360), {}}},
+      {"rollers.occlusion", "",
+       "how far a roller closes the bore: 1 - height under the roller / bore; 1: to the film", shapes_state,
+       RealKey{FIELD(rollers.occlusion), 1, above_to(0, 1), {}}},
+      {"rollers.film_mm", "mm",
+       "height of the film of fluid that a roller leaves, the least height of the bore", shapes_state,
+       RealKey{FIELD(rollers.film), cm_per_mm, above_to(0, 1e3), 0.01}},
   };
 }
 
@@ -243,8 +293,8 @@ std::vector<SceneKey> mesh_keys() {
 
 std::vector<SceneKey> period_keys() {
   return {
-      {"time.steps_per_period", "", "time steps per period of the actuator", shapes_state,
-       IntegerKey{FIELD(time.steps_per_period), 8, 1000000, 96}},
+      {"time.steps_per_period", "", "time steps per period of the actuator, or per turn of the rotor",
+       shapes_state, IntegerKey{FIELD(time.steps_per_period), 8, 1000000, 96}},
       {"time.periods", "", "periods to compute", leaves_state,
        IntegerKey{FIELD(time.periods), 1, 1000000, 10}},
       {"time.flow_error_l_per_min", "l_per_min",
@@ -253,7 +303,7 @@ std::vector<SceneKey> period_keys() {
        "six periods; 0: it does not",
        leaves_state, RealKey{FIELD(time.flow_error), units::flow_from_l_per_min(1), from_to(0, 1000), 0.0}},
       {"time.ramp_periods", "", "stroke and head rise smoothly over this many periods", shapes_state,
-       RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}},
+       RealKey{FIELD(time.ramp_periods), 1, from_to(0, 1000000), 1.0}, Scope::wave_pump},
   };
 }
 
@@ -295,7 +345,9 @@ std::vector<SceneKey> statistics_keys() {
 
 std::vector<SceneKey> scoped(Scope scope, std::vector<SceneKey> keys) {
   for (SceneKey& key : keys) {
-    key.scope = scope;
+    if (key.scope == Scope::any) {
+      key.scope = scope;
+    }
   }
   return keys;
 }
@@ -468,7 +520,7 @@ std::vector<SceneKey> training_keys() {
                         int fallback) {
     return SceneKey{path, "", help, leaves_state, IntegerKey{std::move(field), low, 100000, fallback}};
   };
-  return {
+  std::vector<SceneKey> keys = {
       {"training.model", "",
        "what `train` makes of its runs: a model projected from their snapshots, or an emulator, which "
        "interpolates "
@@ -525,9 +577,18 @@ std::vector<SceneKey> training_keys() {
       bound("training.periodic_tolerance", "",
             "change of the velocity over a period at which a run counts as periodic",
             FIELD(training.periodic_tolerance), 1, between(0, 1), 2e-3),
-      count("training.ranks_per_run", "MPI ranks that share one full-order run",
+      count("training.ranks_per_run", "MPI ranks that share one run of `train` or `study`",
             FIELD(training.ranks_per_run), 1, 1),
   };
+  for (SceneKey& key : keys) {
+    for (const char* path : {"training.head_low_mmHg", "training.head_high_mmHg",
+                             "training.periodic_tolerance", "training.ranks_per_run"}) {
+      if (key.path == path) {
+        key.scope = Scope::pump;
+      }
+    }
+  }
+  return keys;
 }
 
 #undef FIELD
@@ -538,18 +599,19 @@ std::span<const SceneKey> scene_table() {
   static const std::vector<SceneKey> table = [] {
     std::vector<SceneKey> all;
     for (const auto& part :
-         {model_keys(), scoped(Scope::pump, geometry_keys()), scoped(Scope::general, domain_keys()),
-          fluid_keys(), scoped(Scope::pump, pump_keys()), scoped(Scope::pump, actuator_keys()),
-          scoped(Scope::pump, blood_keys()), scoped(Scope::pump, mesh_keys()), numerics_keys(),
-          scoped(Scope::pump, period_keys()), scoped(Scope::general, duration_keys()),
-          scoped(Scope::general, statistics_keys()), stabilisation_keys(),
-          scoped(Scope::pump, thin_gap_keys()), scoped(Scope::pump, training_keys())}) {
+         {model_keys(), scoped(Scope::wave_pump, geometry_keys()), scoped(Scope::general, domain_keys()),
+          scoped(Scope::peristaltic_pump, hose_keys()), fluid_keys(), scoped(Scope::wave_pump, pump_keys()),
+          scoped(Scope::wave_pump, actuator_keys()), scoped(Scope::wave_pump, blood_keys()),
+          scoped(Scope::wave_pump, mesh_keys()), numerics_keys(), scoped(Scope::pump, period_keys()),
+          scoped(Scope::general, duration_keys()), scoped(Scope::general, statistics_keys()),
+          stabilisation_keys(), scoped(Scope::wave_pump, thin_gap_keys()),
+          scoped(Scope::wave_pump, training_keys())}) {
       all.insert(all.end(), part.begin(), part.end());
     }
     for (SceneKey& key : all) {
       for (const char* path : {"model.extent", "model.solid", "model.inlet", "model.outlet"}) {
         if (key.path == path) {
-          key.scope = Scope::pump;
+          key.scope = Scope::wave_pump;
         }
       }
     }
@@ -574,10 +636,12 @@ std::span<const SceneKey> scene_table() {
 }
 
 std::string section_help(const std::string& section) {
-  static const std::array<std::pair<const char*, const char*>, 16> help = {{
+  static const std::array<std::pair<const char*, const char*>, 18> help = {{
       {"model", "Which equations are built. What is not chosen is not assembled."},
       {"space", "Finite elements of the fluid."},
-      {"geometry", "Of a pump: either a profile, or meshes made elsewhere."},
+      {"geometry", "Of a wave pump: either a profile, or meshes made elsewhere."},
+      {"hose", "The hose of a peristaltic pump (docs/peristaltic.md)."},
+      {"rollers", "Its rollers, and the track that they press the hose against."},
       {"domain", "The fluid's domain of any other problem: a polygon or a circle, with holes ([hole.NAME])."},
       {"fluid", "Newtonian, incompressible."},
       {"membrane", "Material of the membrane and the region that the actuator holds."},

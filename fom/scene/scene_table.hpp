@@ -109,8 +109,10 @@ struct NameListKey {
 /// Which scenes have a key.
 enum class Scope {
   any,
-  pump,   ///< of a pump: geometry from a profile or meshes, an actuator
-  general ///< with a domain and bodies of their own (Scene::problem)
+  pump,             ///< of any pump
+  wave_pump,        ///< of a wave pump: geometry from a profile or meshes, an actuator
+  peristaltic_pump, ///< of a peristaltic pump: a hose and rollers
+  general           ///< with a domain and bodies of their own (Scene::problem)
 };
 
 struct SceneKey {
@@ -131,6 +133,12 @@ struct SceneKey {
 
 /// All keys, grouped by section, in the order of documentation.
 std::span<const SceneKey> scene_table();
+
+/// "(pump)", "(wave pump)", ... as the reference marks keys; "" for keys of any scene.
+std::string scope_mark(Scope scope);
+
+/// The scenes that a scope stands for, for messages.
+std::string scope_text(Scope scope);
 
 /// Help line of a section; "" for the keys outside any.
 std::string section_help(const std::string& section);

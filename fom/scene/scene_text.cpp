@@ -16,7 +16,52 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 } // namespace
 
 bool SceneKey::applies_to(const Scene& scene) const {
-  return scope == Scope::any || (scope == Scope::general) == scene.problem.general;
+  const bool general = scene.problem.general;
+  switch (scope) {
+    case Scope::any:
+      return true;
+    case Scope::general:
+      return general;
+    case Scope::pump:
+      return !general;
+    case Scope::wave_pump:
+      return !general && scene.machine == Machine::wave_pump;
+    case Scope::peristaltic_pump:
+      return !general && scene.machine == Machine::peristaltic_pump;
+  }
+  return false;
+}
+
+std::string scope_mark(Scope scope) {
+  switch (scope) {
+    case Scope::any:
+      break;
+    case Scope::general:
+      return "(general)";
+    case Scope::pump:
+      return "(pump)";
+    case Scope::wave_pump:
+      return "(wave pump)";
+    case Scope::peristaltic_pump:
+      return "(peristaltic pump)";
+  }
+  return "";
+}
+
+std::string scope_text(Scope scope) {
+  switch (scope) {
+    case Scope::any:
+      return "any scene";
+    case Scope::general:
+      return "scenes with [domain] or [body.NAME]";
+    case Scope::pump:
+      return "scenes of a pump, without [domain] and [body.NAME]";
+    case Scope::wave_pump:
+      return "scenes of a wave pump, without [domain] and [body.NAME]";
+    case Scope::peristaltic_pump:
+      return "scenes with model.machine = \"peristaltic-pump\"";
+  }
+  return "";
 }
 
 std::string SceneKey::section() const {

@@ -165,9 +165,12 @@ void check_refinements(const Scene& scene, const std::string& where) {
       throw InputError("a box of refinement is not one", std::to_string(box.box.size()) + " points",
                        "two points, the lowest and the highest corner", at);
     }
-    if (!scene.problem.general && (scene.profile.empty() || scene.space == Space::thin_gap)) {
+    const bool no_mesh = scene.space == Space::thin_gap || scene.space == Space::long_wave;
+    if (!scene.problem.general && (scene.profile.empty() || no_mesh)) {
       throw InputError("there is no mesh to refine in a box",
-                       scene.profile.empty() ? "meshes from files" : "space = \"thin-gap\"",
+                       scene.space == Space::long_wave  ? "space = \"long-wave\""
+                       : scene.space == Space::thin_gap ? "space = \"thin-gap\""
+                                                        : "meshes from files",
                        "scenes with \"geometry.profile\" or [domain] and finite elements", at);
     }
   }
@@ -182,8 +185,9 @@ std::set<std::string> boundary_names(const ProblemStatement& problem) {
 }
 
 void check_statement(const Scene& scene, const std::string& where) {
-  if (scene.space == Space::thin_gap) {
-    throw InputError("the space does not go with a general problem", "space = \"thin-gap\"",
+  if (scene.space == Space::thin_gap || scene.space == Space::long_wave) {
+    throw InputError("the space does not go with a general problem",
+                     scene.space == Space::thin_gap ? "space = \"thin-gap\"" : "space = \"long-wave\"",
                      "\"plane\" or \"axisymmetric\"", where + ", section [model]");
   }
   check_domain(scene.problem, where);

@@ -16,6 +16,7 @@
 #include "fom/output/scene_stamp.hpp"
 #include "fom/output/time_series.hpp"
 #include "fom/scene/scene.hpp"
+#include "training/campaign/record_store.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
@@ -44,25 +45,19 @@ struct RunRecord {
 /// recorded.
 SceneStamp stamp_campaign(const Scene& scene);
 
-/// The right to compute one point. It is a lock of the operating system (flock): it ends with its owner, also
-/// by kill -9, and leaves nothing that could block a later run.
+/// The right to compute one point, see RecordClaim.
 class Claim {
 public:
-  Claim(Claim&& other) noexcept;
-  Claim& operator=(Claim&&) = delete;
-  ~Claim();
   const OperatingPoint& point() const { return point_; }
 
 private:
   friend class CampaignStore;
-  Claim(int lock, const OperatingPoint& point) : lock_(lock), point_(point) {}
-  int lock_ = -1; // file descriptor
+  Claim(RecordClaim record, const OperatingPoint& point) : record_(std::move(record)), point_(point) {}
+  RecordClaim record_;
   OperatingPoint point_;
 };
 
-/// Folder with `campaign.h5` (the stamp) and one <point>.h5 per finished run. Any number of processes and
-/// hosts may work on it at once (the file system must support flock). In a parallel run one rank of each
-/// group calls and tells the others.
+/// Folder with `campaign.h5` (the stamp) and one <point>.h5 per finished run, see RecordStore.
 ///
 ///   for (const auto& point : store.status(plan).pending)
 ///     if (const auto claim = store.try_claim(point)) store.store(*claim, compute(point));
@@ -95,15 +90,10 @@ public:
   std::filesystem::path record_file(const OperatingPoint& point) const;
 
 private:
-  bool is_done(const OperatingPoint& point) const;
-  void check_record(const std::filesystem::path& file, const OperatingPoint& point) const;
-  void check_or_create_stamp() const;
-  void remove_leftovers() const;
+  bool is_done(const OperatingPoint& point, std::vector<std::string>* damaged = nullptr) const;
+  RecordStore::Check check_of(const OperatingPoint& point) const;
 
-  std::filesystem::path folder_;
-  SceneStamp stamp_;
-  /// Records found whole, with the time of their last change: each is read through once.
-  mutable std::map<std::filesystem::path, std::filesystem::file_time_type> checked_;
+  RecordStore records_;
 };
 
 } // namespace undula::training

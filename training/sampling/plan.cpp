@@ -4,12 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <numeric>
-#include <random>
 #include <string>
 
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
+#include "training/sampling/scrambled_halton.hpp"
 
 namespace undula::training {
 namespace {
@@ -20,38 +19,17 @@ using UnitPoint = std::array<double, ranges>; // fixed ranges stay at 0
 constexpr int candidates = 4096;
 constexpr double margin = 0.1; // held-out points keep off the faces: judged is interpolation
 
-/// Halton sequence (Halton 1960) with one random permutation of the digits per dimension (0 stays 0, so that
-/// every number has finitely many digits), drawn from a fixed seed: unscrambled, the first points of bases 3
-/// and 5 line up.
-class ScrambledHalton {
+/// Points of the training box in the unit cube.
+class UnitHalton {
 public:
-  explicit ScrambledHalton(std::uint32_t seed) {
-    std::mt19937 random(seed);
-    for (int i = 0; i < ranges; ++i) {
-      auto& digits = digits_[i];
-      digits.resize(bases[i]);
-      std::iota(digits.begin(), digits.end(), 0);
-      // Fisher-Yates by hand: std::shuffle differs between standard libraries.
-      for (int k = bases[i] - 1; k > 1; --k) std::swap(digits[k], digits[1 + random() % k]);
-    }
-  }
-
-  /// Point number `index` >= 1, every coordinate in (0, 1).
+  explicit UnitHalton(std::uint32_t seed) : sequence_(seed, ranges) {}
   UnitPoint operator()(int index) const {
-    UnitPoint point{};
-    for (int i = 0; i < ranges; ++i) {
-      double digit_value = 1;
-      for (int rest = index; rest > 0; rest /= bases[i]) {
-        digit_value /= bases[i];
-        point[i] += digits_[i][rest % bases[i]] * digit_value;
-      }
-    }
-    return point;
+    const auto point = sequence_(index);
+    return {point[0], point[1], point[2]};
   }
 
 private:
-  static constexpr std::array<int, ranges> bases{2, 3, 5};
-  std::array<std::vector<int>, ranges> digits_;
+  ScrambledHalton sequence_;
 };
 
 double squared_distance(const UnitPoint& a, const UnitPoint& b) {
@@ -128,7 +106,7 @@ std::vector<UnitPoint> corners(const Box& box) {
 /// `count` points in the middle of the unit cube, each the farthest from all `taken` and from those before
 /// it.
 std::vector<UnitPoint> farthest_points(const Box& box, const std::vector<UnitPoint>& taken, int count) {
-  const ScrambledHalton halton(20241);
+  const UnitHalton halton(20241);
   std::vector<UnitPoint> pool;
   std::vector<double> clearance;
   for (int k = 1; k <= candidates; ++k) {
@@ -168,7 +146,7 @@ bool is_inside(const TrainingPlan& plan, const OperatingPoint& point) {
 
 std::vector<OperatingPoint> candidate_points(const TrainingPlan& plan, const OperatingPoint& like) {
   const Box box = checked_box(plan, like);
-  const ScrambledHalton halton(4107);
+  const UnitHalton halton(4107);
   std::vector<UnitPoint> points;
   for (int k = 1; k <= candidates; ++k) points.push_back(box.without_fixed(halton(k)));
   return in_units(box, points);
@@ -177,7 +155,7 @@ std::vector<OperatingPoint> candidate_points(const TrainingPlan& plan, const Ope
 SamplingPlan plan_samples(const TrainingPlan& plan, const OperatingPoint& like) {
   const Box box = checked_box(plan, like);
   auto training = corners(box);
-  const ScrambledHalton halton(7);
+  const UnitHalton halton(7);
   for (int k = 1; k <= plan.training_points; ++k) training.push_back(box.without_fixed(halton(k)));
   const auto held_out = farthest_points(box, training, plan.held_out_points);
   return {in_units(box, training), in_units(box, held_out)};

@@ -9,7 +9,7 @@
 namespace undula::training {
 
 void require_trainable(const Scene& scene) {
-  require_pump(scene, "undula train");
+  require_wave_pump(scene, "undula train");
   const auto refuse = [&](bool stated, const char* what, const std::string& seen, const char* allowed,
                           const char* section) {
     if (!stated) return;
