@@ -1,6 +1,8 @@
 // undula new wave-pump|general [FILE]: a commented scene to begin with.
 //   undula new wave-pump pump.toml
 //   undula new general flap.toml --all
+#include <spdlog/spdlog.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -77,15 +79,26 @@ void new_scene(const NewOptions& options) {
   scene.texts["name"] = file.stem().string();
   if (pump) {
     scene.texts["geometry.profile"] = profile.filename().string();
+  }
+  const std::string text = "# Every key is explained in docs/scene.md (`undula check --reference`).\n" +
+                           commented_scene(pump ? wave_pump_template() : general_template(), scene);
+  if (pump) {
     write_new(profile, wave_pump_profile());
   }
-  write_new(file, "# Every key is explained in docs/scene.md (`undula check --reference`).\n" +
-                      commented_scene(pump ? wave_pump_template() : general_template(), scene));
+  try {
+    write_new(file, text);
+  } catch (...) {
+    std::error_code ignored;
+    if (pump) {
+      fs::remove(profile, ignored); // a profile alone is of no use
+    }
+    throw;
+  }
 
   // 3. What to do with it.
   std::cout << file.string() << "\n" << (pump ? profile.string() + "\n" : "");
-  std::cerr << "next: undula check " << file.string() << ", then undula " << (pump ? "hq " : "solve ")
-            << file.string() << (pump ? "" : " --output run --plot") << "\n";
+  spdlog::info("next: undula check {0}, then undula {1} {0}{2}", file.string(), pump ? "hq" : "solve",
+               pump ? "" : " --output run --plot");
 }
 
 } // namespace
