@@ -45,6 +45,12 @@ int main(int argc, char** argv) {
   undula::apps::add_calibrate_command(app);
   undula::apps::add_report_command(app);
   undula::apps::add_study_command(app);
+#ifdef UNDULA_WITH_EXPLORER
+  undula::apps::add_explore_command(app);
+#endif
+  undula::apps::add_new_command(app);
+  undula::apps::add_schema_command(app);
+  undula::apps::add_completion_command(app);
 
   // 3. Run; every failure becomes one message and an exit code.
   try {

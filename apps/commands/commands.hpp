@@ -14,5 +14,10 @@ void add_validate_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_study_command(CLI::App& app);
+/// Where the program is built with cpp-httplib.
+void add_explore_command(CLI::App& app);
+void add_new_command(CLI::App& app);
+void add_schema_command(CLI::App& app);
+void add_completion_command(CLI::App& app);
 
 } // namespace undula::apps

@@ -213,7 +213,7 @@ void add_runs(const TrainOptions& options, const Scene& scene, const CampaignSto
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   const int groups = std::max(1, ranks / scene.training.ranks_per_run);
-  const auto flow_alone = std::span(emulated_columns).first(1);
+  const auto flow_alone = std::span(rom::emulated_columns).first(1);
   while (true) {
     std::vector<OperatingPoint> wanted;
     on_root(comm, [&] {

@@ -82,12 +82,6 @@ std::vector<CurvePoint> curve_from_head_to_head(MarchingLevel& level, const Scen
 
 } // namespace
 
-double efficiency_percent(const CurvePoint& point) {
-  for (const double power : {point.electrical_power_mW, point.actuator_power_mW, point.holder_power_mW})
-    if (std::isfinite(power) && power > 0) return 100 * point.power_mW / power;
-  return CurvePoint::unknown;
-}
-
 CurvePoint curve_point(const PeriodicRun& run, double head_mmHg) {
   CurvePoint point;
   point.head_mmHg = head_mmHg;

@@ -5,10 +5,6 @@
 
 namespace undula::fom {
 
-/// Hydraulic power over the electrical one, else the actuator's, else the holder's, %; NaN: none is known and
-/// positive.
-double efficiency_percent(const CurvePoint& point);
-
 /// The point that a run at a head comes to: means of its last period where it is periodic, else of its last
 /// three.
 CurvePoint curve_point(const PeriodicRun& run, double head_mmHg);

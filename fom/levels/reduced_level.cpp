@@ -1,10 +1,9 @@
 #include "fom/levels/reduced_level.hpp"
 
 #include <chrono>
-#include <cmath>
 
-#include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
+#include "rom/curve/projected_curve.hpp"
 
 namespace undula::fom {
 namespace {
@@ -12,24 +11,6 @@ namespace {
 /// The holder's stroke, mm: a reduced model knows no scale of its own.
 double stroke_mm(const Scene& scene) {
   return units::length_to_mm(scene.operating_point.stroke * scene.operating_point.stroke_scale);
-}
-
-CurvePoint point_of(const rom::HqPoint& answer) {
-  CurvePoint point;
-  point.head_mmHg = answer.head_mmHg;
-  point.flow_l_per_min = answer.flow_l_per_min;
-  point.inflow_l_per_min = answer.inflow_l_per_min;
-  point.spread_l_per_min = answer.spread_l_per_min;
-  point.error_l_per_min = answer.error_l_per_min;
-  point.inside_training_box = answer.inside_training_box;
-  point.power_mW = answer.hydraulic_power_mW;
-  point.periods = answer.marched_periods;
-  point.periodic = answer.converged && std::isfinite(answer.flow_l_per_min);
-  if (!std::isfinite(answer.flow_l_per_min))
-    point.reason = "the reduced model has no finite state there";
-  else if (!answer.converged)
-    point.reason = "no periodic state was found: the flow is the mean of the last period";
-  return point;
 }
 
 } // namespace
@@ -42,13 +23,11 @@ int ReducedLevel::unknowns() const {
 std::vector<CurvePoint> ReducedLevel::curve(const Scene& scene, std::span<const double> heads_mmHg,
                                             const std::function<void()>& on_point) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto answers = rom::hq_curve(model_, scene.operating_point.frequency, stroke_mm(scene), heads_mmHg);
+  auto points =
+      rom::projected_curve(model_, scene.operating_point.frequency, stroke_mm(scene), heads_mmHg, on_point);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  std::vector<CurvePoint> points;
-  for (const auto& answer : answers) {
-    points.push_back(point_of(answer));
-    points.back().seconds["total"] = elapsed.count() / static_cast<double>(answers.size());
-    if (on_point) on_point();
+  for (auto& point : points) {
+    point.seconds["total"] = elapsed.count() / static_cast<double>(points.size());
   }
   return points;
 }

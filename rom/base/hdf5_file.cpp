@@ -384,6 +384,26 @@ std::vector<std::string> Hdf5File::children(const std::string& group) const {
   return names;
 }
 
+Hdf5File::Content Hdf5File::content(const std::string& name) const {
+  const QuietErrors quiet;
+  const Handle object(H5Oopen(id_, name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (!object.valid())
+    throw InputError("no dataset or group '" + name + "'", error_text(), "a file that holds it",
+                     path().string());
+  if (H5Iget_type(object) == H5I_GROUP) return Content::group;
+  if (H5Iget_type(object) != H5I_DATASET) return Content::other;
+  switch (H5Tget_class(Handle(H5Dget_type(object), H5Tclose))) {
+    case H5T_FLOAT:
+      return Content::real;
+    case H5T_INTEGER:
+      return Content::integer;
+    case H5T_STRING:
+      return Content::text;
+    default:
+      return Content::other;
+  }
+}
+
 Hdf5File::Shape Hdf5File::extents(const std::string& name) const {
   const QuietErrors quiet;
   const Handle dataset = open_dataset(id_, target_, name);

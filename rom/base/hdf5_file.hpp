@@ -91,6 +91,10 @@ public:
   bool exists(const std::string& name) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
 
+  /// What a name stands for; `other`: what this class does not read.
+  enum class Content { group, real, integer, text, other };
+  Content content(const std::string& name) const;
+
   /// Names (not paths) of the datasets and groups directly in `group`, in alphabetical order.
   std::vector<std::string> children(const std::string& group) const;
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
 #include "rom/curve/error_estimate.hpp"
+#include "rom/curve/pump_period.hpp"
 #include "rom/fixed_domain/condense.hpp"
 #include "rom/fixed_domain/continuation.hpp"
 
@@ -25,12 +25,7 @@ bool inside(double value, double low, double high) {
 
 void set_envelope(const Operators& operators, const PeriodicSolver& solver, double stroke_cm,
                   const PeriodicState& state, HqPoint& point) {
-  Eigen::MatrixXd axial = operators.envelope * solver.at_steps(state.displacement);
-  const auto steps = axial.cols();
-  for (Eigen::Index n = 0; n < steps; ++n) {
-    const double phase = 2 * std::numbers::pi * static_cast<double>(n) / static_cast<double>(steps);
-    axial.col(n) += operators.envelope_imposed * (stroke_cm * std::sin(phase));
-  }
+  const Eigen::MatrixXd axial = axial_displacement(operators, solver, stroke_cm, state);
   point.envelope_low_mm = axial.rowwise().minCoeff() / units::cm_per_mm;
   point.envelope_high_mm = axial.rowwise().maxCoeff() / units::cm_per_mm;
 }
@@ -103,12 +98,14 @@ std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double st
 
     point.error_calibrated = model.error_safety > 0 || model.error_floor_l_per_min > 0;
     point.indicator_l_per_min = point.error_l_per_min = std::numeric_limits<double>::quiet_NaN();
-    if (!indicator) continue;
-    point.indicator_l_per_min = units::flow_to_l_per_min((*indicator)(stroke, heads[i], state));
-    const double safety = point.error_calibrated ? model.error_safety : 1.0;
-    point.error_l_per_min =
-        growth_outside_box(model.box, frequency_Hz, stroke_mm, point.head_mmHg) *
-        (safety * point.indicator_l_per_min + model.error_floor_l_per_min + point.spread_l_per_min);
+    if (indicator) {
+      point.indicator_l_per_min = units::flow_to_l_per_min((*indicator)(stroke, heads[i], state));
+      const double safety = point.error_calibrated ? model.error_safety : 1.0;
+      point.error_l_per_min =
+          growth_outside_box(model.box, frequency_Hz, stroke_mm, point.head_mmHg) *
+          (safety * point.indicator_l_per_min + model.error_floor_l_per_min + point.spread_l_per_min);
+    }
+    if (options.on_point) options.on_point();
   }
   return points;
 }

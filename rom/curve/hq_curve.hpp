@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ struct HqOptions {
   /// How the periodic state is found (periodic.direct = false: the plain march). Looser than PeriodicOptions
   /// on its own: the flow still has six digits, far more than the model deserves, at half the time.
   PeriodicOptions periodic{.tolerance = 1e-6, .tail_tolerance = 1e-4};
-  bool estimate_errors = true; ///< false: error_l_per_min stays NaN
+  bool estimate_errors = true;    ///< false: error_l_per_min stays NaN
+  std::function<void()> on_point; ///< called after every point; what it throws ends the curve
 };
 
 /// One operating point of the pump in its periodic state, surface units.

@@ -2,25 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <functional>
 
 namespace undula::rom {
 
 std::vector<std::size_t> HeadContinuation::order(std::span<const double> heads) {
-  std::vector<std::size_t> order, left(heads.size());
-  std::iota(left.begin(), left.end(), std::size_t{0});
-  while (!left.empty()) {
-    // Next: the head farthest from all solved ones; the first is the lowest.
-    const auto distance = [&](std::size_t i) {
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const auto j : order) nearest = std::min(nearest, std::abs(heads[i] - heads[j]));
-      return order.empty() ? -heads[i] : nearest;
-    };
-    const auto next = std::max_element(
-        left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
-    order.push_back(*next);
-    left.erase(next);
+  // Next: the head farthest from all solved ones; the first is the lowest.
+  std::vector<double> distance(heads.size());
+  std::transform(heads.begin(), heads.end(), distance.begin(), std::negate<>());
+  std::vector<bool> solved(heads.size(), false);
+  std::vector<std::size_t> order;
+  while (order.size() < heads.size()) {
+    std::size_t next = heads.size();
+    for (std::size_t i = 0; i < heads.size(); ++i)
+      if (!solved[i] && (next == heads.size() || distance[i] > distance[next])) next = i;
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+      const double to_next = std::abs(heads[i] - heads[next]);
+      distance[i] = order.empty() ? to_next : std::min(distance[i], to_next);
+    }
+    solved[next] = true;
+    order.push_back(next);
   }
   return order;
 }

@@ -85,7 +85,7 @@ std::array<rom::EmulatorInput, rom::emulator_inputs> inputs_of(const Scene& scen
 } // namespace
 
 BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store,
-                             std::span<const EmulatedColumn> columns) {
+                             std::span<const rom::EmulatedColumn> columns) {
   BuiltEmulator built;
   auto& emulator = built.emulator;
   emulator.driven_by_voltage = scene.operating_point.drive == Drive::voltage;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fom/levels/emulated_quantities.hpp"
+#include "rom/emulator/emulated_quantities.hpp"
 #include "rom/emulator/emulator.hpp"
 #include "training/campaign/campaign_store.hpp"
 #include "training/sampling/plan.hpp"
@@ -33,6 +33,6 @@ struct BuiltEmulator {
 /// to be multiplied by to cover nine in ten runs comes from leaving each out. Throws InputError for too few
 /// runs that can be used.
 BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store,
-                             std::span<const EmulatedColumn> columns = emulated_columns);
+                             std::span<const rom::EmulatedColumn> columns = rom::emulated_columns);
 
 } // namespace undula::training

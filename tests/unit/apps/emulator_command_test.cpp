@@ -155,7 +155,8 @@ TEST_F(EmulatorCommands, OutsideOfItsBoxItSaysSoAndWrongQuestionsAreRefused) {
   EXPECT_NE(outcome.err.find("voltage 49 V is outside the trained 36 to 48 V"), std::string::npos)
       << outcome.err;
   EXPECT_NE(outcome.err.find("head 70 mmHg"), std::string::npos);
-  expect_refused({"hq", "pump.h5", "--frequency", "120", "--stroke", "0.5", "--head", "40"}, "no --voltage");
+  expect_refused({"hq", "pump.h5", "--frequency", "120", "--stroke", "0.5", "--head", "40"},
+                 "no voltage, but a stroke of 0.5 mm");
   expect_refused({"hq", "pump.h5", "--frequency", "120", "--voltage", "-3", "--head", "40"}, "> 0");
   expect_refused({"hq", "pump.h5", "--voltage", "40", "--head", "40"}, "--frequency");
   expect_refused(

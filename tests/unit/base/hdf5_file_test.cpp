@@ -55,6 +55,22 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST_F(Hdf5FileTest, SaysWhatANameStandsFor) {
+  const auto target = folder_ / "file.h5";
+  auto written = Hdf5File::create(target);
+  written.write("group/real", std::vector<double>{1.5});
+  written.write("group/whole", std::vector<std::int64_t>{1, 2});
+  written.write_text("group/words", "");
+  written.commit();
+  const auto file = Hdf5File::open_read(target);
+  EXPECT_EQ(file.content("/"), Hdf5File::Content::group);
+  EXPECT_EQ(file.content("group"), Hdf5File::Content::group);
+  EXPECT_EQ(file.content("group/real"), Hdf5File::Content::real);
+  EXPECT_EQ(file.content("group/whole"), Hdf5File::Content::integer);
+  EXPECT_EQ(file.content("group/words"), Hdf5File::Content::text);
+  EXPECT_TRUE(contains(message([&] { file.content("group/none"); }), "no dataset or group 'group/none'"));
+}
+
 TEST_F(Hdf5FileTest, KeepsValuesShapesAndAttributesBitForBit) {
   const std::vector<double> field = {0.1, -0.0, 1e-310, 1e300, 2.0 / 3.0, -7};
   const std::vector<int> ids = {-1, 2147483647, 0, 5, 6, 7, 8, 9};

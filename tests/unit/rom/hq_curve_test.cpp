@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "rom/base/error.hpp"
@@ -196,6 +199,26 @@ TEST(HeadContinuation, InterpolatesPolynomialsExactlyFromTheEndsInwards) {
   for (const double h : {0.0, 40.0, 20.0, 20.0})
     continuation.add(h, Eigen::MatrixXd::Constant(2, 3, h * h - 3 * h));
   EXPECT_NEAR(continuation.guess(30)(1, 2), 30 * 30 - 90, 1e-10);
+}
+
+TEST(HeadContinuation, OrdersThousandsOfHeadsByTheFarthestNext) {
+  std::vector<double> heads(10000);
+  for (std::size_t i = 0; i < heads.size(); ++i) heads[i] = std::fmod(37.0 * static_cast<double>(i), 101.0);
+  const auto order = HeadContinuation::order(heads); // as many as the command line takes; at once
+  ASSERT_EQ(order.size(), heads.size());
+  const auto to_solved = [&](std::size_t head, std::size_t solved) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < solved; ++j)
+      nearest = std::min(nearest, std::abs(heads[head] - heads[order[j]]));
+    return nearest;
+  };
+  EXPECT_EQ(heads[order[0]], 0);
+  for (std::size_t solved = 1; solved < 120; ++solved)
+    for (std::size_t i = 0; i < 101; ++i)
+      EXPECT_GE(to_solved(order[solved], solved), to_solved(i, solved)) << solved;
+  auto all = order;
+  std::sort(all.begin(), all.end());
+  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i], i);
 }
 
 } // namespace

@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "fom/levels/curve_point.hpp"
+#include "rom/curve/curve_point.hpp"
 
-namespace undula::fom {
+namespace undula::rom {
 
 struct EmulatedColumn {
   const char* name;
@@ -26,4 +26,4 @@ inline constexpr std::array<EmulatedColumn, 9> emulated_columns = {{
     {"stressed_volume_mm3", "mm^3", &CurvePoint::stressed_volume_mm3},
 }};
 
-} // namespace undula::fom
+} // namespace undula::rom
