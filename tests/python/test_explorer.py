@@ -130,8 +130,12 @@ def test_other_hosts_methods_and_paths_are_refused(explorer):
     assert explorer.ask("/model", headers={"Host": f"localhost:{port}"})[0].status == 200
 
     for method in ("POST", "PUT", "DELETE", "PATCH", "OPTIONS"):
-        response, text = explorer.ask("/model", method, body="x" * 100)
+        response, text = explorer.ask("/model", method)
         assert response.status == 405 and b"ranges" not in text, method
+        # A body is never read: the connection may be cut before the answer is.
+        request = f"{method} /model HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 100\r\n\r\n" + "x" * 100
+        answer = explorer.send(request.encode())
+        assert answer == b"" or b" 405 " in answer.split(b"\r\n")[0], method
     assert explorer.ask("/model", "HEAD")[0].status == 200
 
     for path in ("/etc/passwd", "/../etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd", "/data/models/wave_pump_fixed.h5",
