@@ -38,6 +38,11 @@ struct CurvePoint {
   /// What the blood sees, of finite elements: see blood_stress.hpp. The percentage compares designs alone.
   double haemolysis_percent = unknown, scalar_stress_max_Pa = unknown, stressed_volume_mm3 = unknown;
   double speed_max_cm_per_s = unknown, clearance_min_mm = unknown;
+  /// Of a peristaltic pump: see hose_observation.hpp. The ripple is largest minus smallest outflow, the leak
+  /// flows backwards through the narrowest place of the hose.
+  double flow_per_turn_ml = unknown, ripple_l_per_min = unknown, leak_l_per_min = unknown;
+  double torque_N_m = unknown, torque_max_N_m = unknown, roller_force_max_N = unknown;
+  double outlet_pressure_min_mmHg = unknown, outlet_pressure_max_mmHg = unknown;
   /// Where solids move through the elements: the least number of elements across a film, and the part of the
   /// averaged periods with fewer than four.
   double film_elements_min = unknown, film_unresolved_percent = unknown;

@@ -42,6 +42,7 @@ CurvePoint curve_point_of(const Scene& scene, const RunRecord& record) {
   run.cycles = record.cycles;
   run.plain_periods = record.plain_periods;
   run.blood = scene.blood;
+  run.period = 1 / record.point.frequency;
   run.seconds = record.seconds;
   return curve_point(run, units::pressure_to_mmHg(record.point.head));
 }
