@@ -1,4 +1,4 @@
-// undula: head-flow curves of wave-membrane blood pumps. Exit codes: 0 done, 1 the numerics or the
+// undula: head-flow curves of pumps with moving walls. Exit codes: 0 done, 1 the numerics or the
 // disk failed, or it was stopped, 2 wrong input.
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   spdlog::set_pattern("%^%l%$: %v");
 
   // 2. The command line.
-  CLI::App app("Undula predicts the head-flow curve of a wave-membrane blood pump.", "undula");
+  CLI::App app("Undula predicts the head-flow curve of pumps with moving walls.", "undula");
   app.require_subcommand(1);
   app.set_version_flag("--version", std::function<std::string()>(undula::apps::version_text),
                        "print the version, the commit and those of libraries");

@@ -65,7 +65,8 @@ struct HqCommandOptions {
 
 /// The level beside the curve: at the frequency and stroke that its holder makes. Beside a scene that a
 /// voltage drives, a scene keeps its own drive; one that a stroke drives takes the nominal stroke of the
-/// curve's data. An emulator, and a scene beside one, take the voltage of the curve.
+/// curve's data. An emulator, and a scene beside one, take the voltage of the curve. Beside rollers, others
+/// turn as fast.
 LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, bool of_emulator,
                         const MeasuredCurve* data) {
   const auto& point = scene.operating_point;
@@ -81,6 +82,9 @@ LevelSource read_beside(const HqCommandOptions& options, const Scene& scene, boo
       return read_level_source(options.beside, {}, point.frequency, data->stroke_mm);
     }
     return beside;
+  }
+  if (point.drive == Drive::rollers) {
+    return read_level_source(options.beside, {}, point.frequency, {});
   }
   // A projected model knows no scale of the stroke.
   const bool projected = !is_scene(options.beside) && !rom::holds_emulator(options.beside) &&

@@ -208,6 +208,56 @@ TEST(PeristalticPump, EnergyIsAccountedFor) {
   EXPECT_NEAR(rotor, mean_of(soft, [](const Observation& seen) { return seen.energy.holder; }), 1e-3 * rotor);
 }
 
+TEST(PeristalticPump, WhatARollerGivesIsInTheHoseAtEveryStep) {
+  // A stiff hose that one roller enters: its elastic energy rises by the work of the rotor.
+  const Scene scene =
+      hose_scene({"rollers.count=1", "rollers.track_angle_deg=120", "hose.young_dyn_per_cm2=3e9"});
+  const auto turn = last_turn(scene);
+  double highest = 0, work = 0, most = 0;
+  for (std::size_t i = 180; i < turn.size(); ++i) { // the roller is free at first, then enters
+    highest = std::max(highest, turn[i].energy.elastic);
+    work += turn[i].energy.holder / (360 * scene.operating_point.frequency);
+    most = std::max(most, work);
+  }
+  EXPECT_EQ(turn[179].energy.elastic, 0);
+  EXPECT_NEAR(most, highest, 0.01 * highest);
+  // The force that lifts over the way of the entry: no torque without a slope.
+  EXPECT_NEAR(turn[59].hose->torque, 0, 1e-3 * turn[350].hose->torque);
+}
+
+TEST(PeristalticPump, AHeadSetsTheColumnOfFluidInMotion) {
+  // Rollers that hardly touch, no time for friction: outflow = -head A t / (rho L).
+  const Scene scene =
+      hose_scene({"rollers.occlusion=0.001", "operating_point.head_mmHg=-5", "fluid.viscosity_poise=1e-4",
+                  "time.steps_per_period=20000", "time.periods=1"});
+  const HoseModel model = hose_model(scene);
+  PhaseTimer timer;
+  const HoseStepper stepper(model, scene, timer);
+  State state = hose_state_at_rest(model);
+  for (int i = 0; i < 40; ++i) stepper.advance(state);
+  const double expected =
+      -scene.operating_point.head * model.area * state.time / (scene.fluid.density * model.length);
+  EXPECT_NEAR(state.x[0][0], expected, 0.01 * expected);
+}
+
+TEST(PeristalticPump, AnOpenHoseHasTheFrictionOfATurbulentPipe) {
+  // Water at 2 m/s in 6.4 mm: Re 12,800; Blasius and the entry.
+  const Scene scene = hose_scene({"rollers.occlusion=0.001", "hose.inlet_length_mm=3000"});
+  const HoseModel model = hose_model(scene);
+  constexpr double slow = 1e-12, speed = 200;
+  const HoseInstant instant = hose_at(model, slow, 0.0);
+  const double reynolds = speed * 0.64 / 0.01;
+  const double friction = 0.3164 * std::pow(reynolds, -0.25) * model.length / 0.64;
+  const double expected = 0.5 * speed * speed * (1.5 + friction);
+  // Driven from the inlet, by a negative head.
+  double low = -1e7, high = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (hose_flow(model, instant, middle, speed * model.area).drive > 0 ? low : high) = middle;
+  }
+  EXPECT_NEAR(-low, expected, 0.03 * expected);
+}
+
 TEST(PeristalticPump, AShutValveIsAHeadAtWhichOnlyTheLeakIsLeft) {
   const double open = volume_per_turn(hose_scene({"rollers.film_mm=0.05"}));
   double before = open;

@@ -27,7 +27,7 @@ Outcome run_done(const Words& words, const std::filesystem::path& folder) {
 TEST(PeristalticCommands, CheckSaysWhatFollowsFromTheKeys) {
   const ScratchFolder folder;
   const Json found = Json::parse(run_done({"check", scene, "--json"}, folder.path()).out);
-  // acceptance by hand: 146 - 15 - 16, 146 - 30 - 4 - 66.25.
+  // by hand: 146 - 15 - 16, 146 - 30 - 4 - 66.25.
   EXPECT_NEAR(found["hose"]["centreline_radius_mm"], 115, 1e-9);
   EXPECT_NEAR(found["hose"]["crank_mm"], 45.75, 1e-9);
   EXPECT_NEAR(found["hose"]["gap_mm"], 4, 1e-9);
@@ -85,6 +85,25 @@ TEST(PeristalticCommands, HqFallsWithTheHeadAndSaysWhatTheRollersDo) {
     before = point["flow_l_per_min"];
   }
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "hq.png"));
+}
+
+TEST(PeristalticCommands, HqTakesABandOfTolerancesAndAnotherHoseBeside) {
+  const ScratchFolder folder;
+  std::string text = text_of(scene);
+  text.replace(text.find("occlusion = 0.875"), 17, "occlusion = 0.95");
+  std::ofstream(folder.path() / "tighter.toml") << text;
+  const Json curve =
+      Json::parse(run_done({"hq", scene, "--head", "0", "--frequency", "0.5", "--beside", "tighter.toml",
+                            "--band", "--set", "rollers.occlusion={ value = 0.875, tolerance = 0.02 }",
+                            "--set", "time.steps_per_period=48", "--json"},
+                           folder.path())
+                      .out);
+  const Json& point = curve["points"][0];
+  EXPECT_EQ(curve["frequency_Hz"], 0.5);
+  EXPECT_GT(point["beside"]["flow_l_per_min"].get<double>(), point["flow_l_per_min"].get<double>());
+  // The beside one turns at the same speed: its plug is no faster.
+  EXPECT_LT(point["beside"]["flow_l_per_min"].get<double>(), 0.581 * 0.5 * 60);
+  EXPECT_GT(point["error_l_per_min"].get<double>(), 0.1);
 }
 
 TEST(PeristalticCommands, WhatNeedsAWavePumpSaysSo) {

@@ -137,6 +137,23 @@ TEST(StudyCommand, TakesScenesThatAreNoPumps) {
   EXPECT_NE(outcome.out.find("ended"), std::string::npos) << outcome.out;
 }
 
+TEST(StudyCommand, ItsFolderIsKeptFromOthers) {
+  const ScratchFolder folder;
+  const Words ranges = {"--vary", "rollers.occlusion=0.6:0.9:2"};
+  ASSERT_EQ(run_undula(study(ranges), folder.path()).exit_code, 0);
+  // A run.
+  const Outcome run = run_undula({"solve", scene, "--output", "s", "--force"}, folder.path());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("that of a study"), std::string::npos) << run.err;
+  // A study of another fluid.
+  Words other = study(ranges);
+  other.insert(other.end(), {"--set", "fluid.viscosity_poise=0.02"});
+  const Outcome refused = run_undula(other, folder.path());
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("fluid.viscosity_poise: was 0.01, is 0.02"), std::string::npos) << refused.err;
+  EXPECT_EQ(records_in(folder.path() / "s"), 2);
+}
+
 TEST(StudyCommand, WrongRangesAreRefusedBeforeTheFolderIsMade) {
   const ScratchFolder folder;
   const std::vector<std::pair<Words, std::string>> cases = {
