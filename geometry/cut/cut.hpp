@@ -38,8 +38,8 @@ public:
   ///
   /// Throws InputError if `solids` have another connectivity. Throws NumericsError if a solid is placed at
   /// no number, a cell of it is flat or inverted, or the skins of solids cross in the plane; and, naming
-  /// a reproducer file (see cut_reproducer.hpp), if an element does not add up (sum of parts + solid = element,
-  /// every part closed, to 1e-10 relative), as with solids that overlap.
+  /// a reproducer file (see cut_reproducer.hpp), if an element does not add up (sum of parts + solid =
+  /// element, every part closed, to 1e-10 relative), as with solids that overlap.
   CutMesh<dim> cut(std::span<const SimplexMesh<dim>> solids) const;
 
   const CutOptions& options() const;

@@ -3,12 +3,15 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/hilbert_sort.h>
+#include <CGAL/make_mesh_3.h>
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "geometry/mesh/space_mesh.hpp"
+#include "rom/base/error.hpp"
 
 namespace undula::geometry {
 
@@ -31,6 +34,23 @@ struct ScaledSize {
     return factor * (*size)(Point<3>(x.x(), x.y(), x.z()));
   }
 };
+
+/// Refines, then moves points (odt, perturb), which takes flat cells away. Exudation does so too, but its
+/// result depends on where CGAL's objects lie in memory. Throws InputError beyond `most_points`.
+template <class Complex, class Domain, class Criteria>
+Complex refined_complex(const Domain& domain, const Criteria& criteria, int most_points,
+                        const std::string& where) {
+  using namespace CGAL::parameters;
+  auto complex = CGAL::make_mesh_3<Complex>(
+      domain, criteria, no_perturb(), no_exude(),
+      mesh_3_options(maximal_number_of_vertices = static_cast<std::size_t>(most_points)));
+  if (complex.triangulation().number_of_vertices() >= static_cast<std::size_t>(most_points))
+    throw InputError("a mesh would have too many points", "more than " + std::to_string(most_points),
+                     "a coarser size", where);
+  CGAL::odt_optimize_mesh_3(complex, domain, max_iteration_number = 10);
+  CGAL::perturb_mesh_3(complex, domain);
+  return complex;
+}
 
 /// Points along a Hilbert curve, cells by their first point; no boundary.
 template <class Complex>

@@ -5,7 +5,6 @@
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
-#include <CGAL/make_mesh_3.h>
 
 #include <algorithm>
 #include <cmath>
@@ -143,7 +142,7 @@ public:
     for (const auto& corner : corners) {
       if (corner.x() == 0) continue;
       const double edge = size(place(corner, 0.5 * turn));
-      const int n = std::max(64, static_cast<int>(8 * corner.x() * turn / edge));
+      const int n = std::max(64, static_cast<int>(4 * corner.x() * turn / edge));
       Polyline arc;
       for (int i = 0; i < n; ++i) arc.push_back(point(place(corner, turn * i / n)));
       arc.push_back(whole_ ? arc.front() : point(place(corner, 1)));
@@ -250,8 +249,8 @@ void add_boundary(const Revolved& body, const std::vector<std::string>& names, S
 
 } // namespace
 
-SimplexMesh<3> mesh_revolved(const TaggedPolygon& profile, double sector_degrees,
-                             const SpaceSizeField& size) {
+SimplexMesh<3> mesh_revolved(const TaggedPolygon& profile, double sector_degrees, const SpaceSizeField& size,
+                             int most_points) {
   check(profile, sector_degrees);
   const Revolved body(profile, sector_degrees);
   CGAL::Random random(0);
@@ -270,10 +269,8 @@ SimplexMesh<3> mesh_revolved(const TaggedPolygon& profile, double sector_degrees
                           facet_size = Size{&size, facet_radius},
                           facet_distance = Size{&size, surface_distance}, cell_radius_edge_ratio = 2,
                           cell_size = Size{&size, cell_radius});
-  // Moving points (odt, perturb) takes flat cells away. Exudation does so too, but its result depends on
-  // where CGAL's objects lie in memory.
   const auto complex =
-      CGAL::make_mesh_3<Complex>(domain, criteria, odt(max_iteration_number = 10), no_exude());
+      refined_complex<Complex>(domain, criteria, most_points, "the mesh of a body of revolution");
   auto mesh = refined_cells(complex);
   peel_flat_cells(mesh);
   add_boundary(body, profile.names, mesh);

@@ -11,7 +11,6 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Polyhedral_mesh_domain_with_features_3.h>
 #include <CGAL/Random.h>
-#include <CGAL/make_mesh_3.h>
 
 #include "geometry/mesh/refined_cells.hpp"
 #include "rom/base/error.hpp"
@@ -59,7 +58,7 @@ Surface read_surface(const std::filesystem::path& file, double cm_per_unit) {
 } // namespace
 
 SimplexMesh<3> mesh_closed_surface(const std::filesystem::path& file, double cm_per_unit,
-                                   const SpaceSizeField& size) {
+                                   const SpaceSizeField& size, int most_points) {
   const auto surface = read_surface(file, cm_per_unit);
   CGAL::Random random(0);
   CGAL::get_default_random() = CGAL::Random(0); // the result depends on the input only
@@ -71,9 +70,7 @@ SimplexMesh<3> mesh_closed_surface(const std::filesystem::path& file, double cm_
                           facet_size = Size{&size, facet_radius},
                           facet_distance = Size{&size, surface_distance}, cell_radius_edge_ratio = 2,
                           cell_size = Size{&size, cell_radius});
-  // As for bodies of revolution.
-  const auto complex =
-      CGAL::make_mesh_3<Complex>(domain, criteria, odt(max_iteration_number = 10), no_exude());
+  const auto complex = refined_complex<Complex>(domain, criteria, most_points, file.string());
   auto mesh = refined_cells(complex);
   if (mesh.cells.empty())
     throw NumericsError("a surface has not been filled by cells", file.string(), "a size below its extent");

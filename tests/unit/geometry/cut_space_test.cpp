@@ -8,6 +8,7 @@
 
 #include "geometry/cut/cut.hpp"
 #include "geometry/cut/cut_reproducer.hpp"
+#include "geometry/cut/dof_matching.hpp"
 #include "geometry/mesh/space_mesh.hpp"
 #include "rom/base/error.hpp"
 #include "space_invariants.hpp"
@@ -90,6 +91,59 @@ void sweep(int positions) {
 TEST(CutSpace, SweepOfAPlate) { sweep(16); }
 TEST(CutSpace, DISABLED_SweepOfAPlateThroughAThousandPositions) { sweep(1000); }
 
+/// Whether each of `count` unknowns, given by part, is one of parts below (0) and above (1) a plane.
+template <class ByPart>
+std::array<std::vector<char>, 2> sides_of(const CutMesh<3>& cut, const ByPart& unknowns, std::size_t count,
+                                          const Point<3>& normal, const Point<3>& on_it) {
+  std::array<std::vector<char>, 2> seen;
+  for (auto& side : seen) side.assign(count, 0);
+  for (std::size_t p = 0; p < cut.parts.size(); ++p) {
+    const auto& part = cut.parts[p];
+    Point<3> x = Point<3>::Zero();
+    if (part.cut)
+      x = cut.volume_quadrature.points[part.quadrature_begin];
+    else
+      for (const int v : cut.mesh.cells[part.cell]) x += cut.mesh.points[v] / 4;
+    for (const int unknown : unknowns[p]) seen[(x - on_it).dot(normal) > 0][unknown] = 1;
+  }
+  return seen;
+}
+
+TEST(CutSpace, UnknownsKeepTheirSideWhileAPlateMoves) {
+  const Mesh3 plate = box({-1, -1, -0.01}, {1, 1, 0.01}, {3, 3, 1});
+  const auto turn = rotation(0.2, {1, 2, 0});
+  const Point<3> normal = turn * Point<3>(0, 0, 1);
+  const BackgroundCutter<3> cutter(unit_box(), Solids3{plate}, {});
+  const auto place = [&](int step) -> Point<3> { return Point<3>(0.5, 0.5, 0.42) + 0.012 * step * normal; };
+  auto before = cutter.cut(Solids3{moved(plate, place(0), turn)});
+  auto dofs_before = build_dof_sets(before);
+  int fresh = 0;
+  for (int step = 1; step < 12; ++step) {
+    SCOPED_TRACE(step);
+    auto now = cutter.cut(Solids3{moved(plate, place(step), turn)});
+    auto dofs_now = build_dof_sets(now);
+    const auto match = match_dofs(before, dofs_before, now, dofs_now);
+    const auto old_sides =
+        sides_of(before, dofs_before.part_dofs, dofs_before.dof_point.size(), normal, place(step - 1));
+    const auto new_sides = sides_of(now, dofs_now.part_dofs, dofs_now.dof_point.size(), normal, place(step));
+    std::vector<char> taken(dofs_before.dof_point.size(), 0);
+    for (std::size_t d = 0; d < match.size(); ++d) {
+      if (match[d] < 0) {
+        ++fresh;
+        continue;
+      }
+      EXPECT_FALSE(taken[match[d]]);
+      taken[match[d]] = 1;
+      EXPECT_EQ(dofs_now.dof_point[d], dofs_before.dof_point[match[d]]);
+      for (int side : {0, 1}) EXPECT_EQ(new_sides[side][d], old_sides[side][match[d]]);
+    }
+    before = std::move(now);
+    dofs_before = std::move(dofs_now);
+  }
+  EXPECT_GT(fresh, 20); // the plate has swept over points
+  EXPECT_LT(fresh, 11 * 60);
+}
+
 TEST(CutSpace, ThinPlatesPartTheFluid) {
   for (const double thickness : {1e-3, 1e-9, 1e-13})
     for (const double angle : {0.0, 0.3}) {
@@ -105,23 +159,9 @@ TEST(CutSpace, ThinPlatesPartTheFluid) {
       // No unknown on both sides.
       const auto dofs = build_dof_sets(cut);
       const auto edges = build_edge_sets(cut);
-      const Point<3> normal = rotation(angle, {1, 2, 0}) * Point<3>(0, 0, 1);
-      std::array<std::vector<char>, 2> seen, edge_seen;
-      for (int side : {0, 1}) {
-        seen[side].assign(dofs.dof_point.size(), 0);
-        edge_seen[side].assign(edges.edge_points.size(), 0);
-      }
-      for (std::size_t p = 0; p < cut.parts.size(); ++p) {
-        const auto& part = cut.parts[p];
-        Point<3> x = Point<3>::Zero();
-        if (part.cut)
-          x = cut.volume_quadrature.points[part.quadrature_begin];
-        else
-          for (const int v : cut.mesh.cells[part.cell]) x += cut.mesh.points[v] / 4;
-        const int side = (x - Point<3>(0.5, 0.5, 0.55)).dot(normal) > 0;
-        for (const int dof : dofs.part_dofs[p]) seen[side][dof] = 1;
-        for (const int dof : edges.part_edges[p]) edge_seen[side][dof] = 1;
-      }
+      const Point<3> normal = rotation(angle, {1, 2, 0}) * Point<3>(0, 0, 1), on_it(0.5, 0.5, 0.55);
+      const auto seen = sides_of(cut, dofs.part_dofs, dofs.dof_point.size(), normal, on_it);
+      const auto edge_seen = sides_of(cut, edges.part_edges, edges.edge_points.size(), normal, on_it);
       for (std::size_t d = 0; d < dofs.dof_point.size(); ++d) EXPECT_EQ(seen[0][d] + seen[1][d], 1);
       for (std::size_t d = 0; d < edges.edge_points.size(); ++d)
         EXPECT_EQ(edge_seen[0][d] + edge_seen[1][d], 1);

@@ -141,6 +141,9 @@ TEST(RevolvedMesh, RefusesWhatIsNoBody) {
   EXPECT_THROW(mesh_revolved(bad, 360, size), InputError);
   EXPECT_THROW(mesh_revolved(ring(), 0, size), InputError);
   EXPECT_THROW(mesh_revolved(ring(), 400, size), InputError);
+  EXPECT_THROW(mesh_revolved(
+                   ring(), 360, [](const Point<3>&) { return 0.02; }, 500),
+               InputError);
 }
 
 } // namespace
