@@ -29,6 +29,7 @@
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/text_table.hpp"
 #include "fom/levels/emulated_level.hpp"
+#include "fom/levels/moving_reduced_level.hpp"
 #include "fom/output/root_rank.hpp"
 #include "fom/scene/operating_point.hpp"
 #include "fom/scene/scene_value.hpp"
@@ -186,9 +187,10 @@ Question read_question(const HqCommandOptions& options) {
   for (std::size_t k = 1; k < voltages.size(); ++k) {
     // An emulator's scene is no whole one: it is made again instead of changed.
     question.scenes.push_back(
-        question.source.emulator
-            ? scene_of_emulator(*question.source.emulator, options.file, *options.frequency_Hz, {},
-                                voltages[k])
+        question.source.emulator ? scene_of_emulator(*question.source.emulator, options.file,
+                                                     *options.frequency_Hz, {}, voltages[k])
+        : question.source.moving
+            ? scene_of_moving_model(*question.source.moving, options.file, *options.frequency_Hz, voltages[k])
             : with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
   }
   const Scene& scene = question.scenes.front();
@@ -235,8 +237,8 @@ Question read_question(const HqCommandOptions& options) {
   }
   if (!options.beside.empty()) {
     for (std::size_t k = 0; k < question.scenes.size(); ++k) {
-      question.other.push_back(read_beside(options, question.scenes[k], question.source.emulator.has_value(),
-                                           question.beside_curve[k]));
+      const bool of_runs = question.source.emulator || question.source.moving;
+      question.other.push_back(read_beside(options, question.scenes[k], of_runs, question.beside_curve[k]));
     }
   }
   return question;
@@ -253,7 +255,11 @@ void tell_tiers(const HqCommandOptions& options, const Question& question,
         spdlog::log(met ? spdlog::level::info : spdlog::level::warn, "{} mmHg: {} ({})",
                     plain_number(point.head_mmHg), point.tier, point.why);
       }
-      recorded = recorded || (!options.campaign.empty() && point.tier.starts_with("scene "));
+      const auto answered = [&](const LevelSource& source) {
+        return !source.is_model() && tier_name(source) == point.tier;
+      };
+      recorded =
+          recorded || (!options.campaign.empty() && std::ranges::any_of(question.tiers.sources, answered));
     }
   }
   if (!recorded) {
@@ -261,9 +267,14 @@ void tell_tiers(const HqCommandOptions& options, const Question& question,
   }
   for (const LevelSource& source : question.tiers.sources) {
     if (!source.is_model()) {
+      std::string settings;
+      for (const std::string& one : options.overrides) {
+        settings += " --set '" + one + "'";
+      }
       spdlog::info(
-          "the runs are in {}; to learn from them: undula train {} --campaign {} --with-recorded --output {}",
-          options.campaign, source.file, options.campaign, options.file);
+          "the runs are in {}; to learn from them: undula train {} --campaign {} --with-recorded{}{}",
+          options.campaign, source.file, options.campaign,
+          question.source.is_model() ? " --force --output " + options.file : "", settings);
     }
   }
 }

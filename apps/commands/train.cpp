@@ -254,7 +254,12 @@ std::vector<OperatingPoint> recorded_besides(const Scene& scene, const CampaignS
     const auto same = [&](const OperatingPoint& other) { return same_point(point, other); };
     return std::ranges::any_of(plan.training, same) || std::ranges::any_of(plan.held_out, same);
   };
-  for (const OperatingPoint& point : store.recorded_points()) {
+  std::vector<std::string> damaged;
+  const auto recorded = store.recorded_points(damaged);
+  for (const std::string& message : damaged) {
+    spdlog::warn("{}", message);
+  }
+  for (const OperatingPoint& point : recorded) {
     if (point.drive == scene.operating_point.drive && is_inside(scene.training, point) && !planned(point)) {
       besides.push_back(point);
     }
@@ -282,7 +287,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     throw InputError("a projected model does not choose its runs", "--tolerance",
                      "training.model = \"emulator\"", scene.file.string());
   }
-  const bool moving = !emulated && scene.coupling == Coupling::mapped;
+  const bool moving = !emulated && has_mapped_domain(scene);
   SamplingPlan plan =
       plan_samples(scene.training, emulated || moving ? scene.operating_point : OperatingPoint{});
   std::optional<CampaignStore> store;
@@ -340,6 +345,11 @@ void train(const TrainOptions& options, MPI_Comm comm) {
       rom::save_moving_model(built.model, output);
       for (const std::string& message : built.left_out) {
         spdlog::warn("left out, failed: {}", message);
+      }
+      if (const double error = std::max(built.cubature.part_error, built.cubature.cell_error);
+          error > scene.training.cubature_error) {
+        spdlog::warn("the cubature misses {} of the forces, more than training.cubature_error allows, {}",
+                     plain_number(error), plain_number(scene.training.cubature_error));
       }
       std::cout << (options.json ? moving_model_json(built, output) : moving_model_text(built, output));
       return;

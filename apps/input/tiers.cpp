@@ -4,9 +4,11 @@
 #include <filesystem>
 
 #include "fom/output/root_rank.hpp"
+#include "fom/scene/scene_checks.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
+#include "training/sampling/trainable_scene.hpp"
 
 namespace undula::apps {
 
@@ -23,15 +25,29 @@ TierSources read_tiers(const LevelSource& first, const std::vector<std::string>&
   const auto& at = first.scene.operating_point;
   const bool by_voltage = at.drive == Drive::voltage;
   for (const std::string& file : then) {
-    tiers.sources.push_back(
-        read_level_source(file, is_scene(file) ? overrides : std::vector<std::string>{}, at.frequency,
-                          by_voltage ? std::nullopt : std::optional(units::length_to_mm(at.stroke)),
-                          by_voltage ? std::optional(at.voltage) : std::nullopt));
+    tiers.sources.push_back(read_level_source(
+        file, is_scene(file) ? overrides : std::vector<std::string>{}, at.frequency,
+        by_voltage ? std::nullopt : std::optional(units::length_to_mm(at.stroke * at.stroke_scale)),
+        by_voltage ? std::optional(at.voltage) : std::nullopt));
+  }
+  for (const LevelSource& source : tiers.sources) {
+    if (source.scene.operating_point.drive != at.drive) {
+      throw InputError("levels of one curve have one drive", source.file + " is driven otherwise",
+                       "models and scenes with the same operating_point.drive", "--then");
+    }
   }
   const auto is_scene_source = [](const LevelSource& source) { return !source.is_model(); };
-  if (!campaign.empty() && std::ranges::none_of(tiers.sources, is_scene_source)) {
-    throw InputError("runs are recorded of a scene, and none is asked", "--campaign " + campaign,
-                     "--then SCENE.toml", "--campaign");
+  const auto scenes = std::ranges::count_if(tiers.sources, is_scene_source);
+  if (!campaign.empty() && scenes != 1) {
+    throw InputError("a campaign records the runs of one scene",
+                     std::to_string(scenes) + " scenes beside --campaign " + campaign, "--then SCENE.toml",
+                     "--campaign");
+  }
+  for (const LevelSource& source : tiers.sources) {
+    if (!campaign.empty() && is_scene_source(source)) {
+      training::require_trainable(source.scene);
+      check_training(source.scene, source.scene.file.string());
+    }
   }
   return tiers;
 }

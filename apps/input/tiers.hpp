@@ -19,7 +19,8 @@ struct TierSources {
 };
 
 /// `first` and then every file of `then`, at its frequency and drive; scenes among them with `overrides`.
-/// Throws InputError for a `campaign` without a scene.
+/// Throws InputError for a `campaign` without a scene or with several, a scene that no campaign can run, and
+/// levels that are driven otherwise.
 TierSources read_tiers(const LevelSource& first, const std::vector<std::string>& then,
                        const std::vector<std::string>& overrides, const std::string& campaign);
 

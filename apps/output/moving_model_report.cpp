@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -44,7 +45,7 @@ std::string moving_model_text(const BuiltMovingModel& built, const std::string& 
     }
     const double error = std::abs(run.rom_flow_l_per_min - run.flow_l_per_min);
     square += error * error;
-    worst = std::max(worst, error);
+    worst = std::isnan(error) ? std::numeric_limits<double>::infinity() : std::max(worst, error);
     ++judged;
     rows.push_back({plain_number(run.frequency_Hz), decimals(run.voltage_V, 2), decimals(run.head_mmHg, 2),
                     decimals(run.flow_l_per_min, 3), decimals(run.standard_error_l_per_min, 3),

@@ -21,9 +21,15 @@ double known_error(const CurvePoint& point) {
 
 Scene asked(const Tier& tier, const Scene& scene) {
   Scene there = tier.scene;
-  there.operating_point.frequency = scene.operating_point.frequency;
-  there.operating_point.stroke = scene.operating_point.stroke;
-  there.operating_point.voltage = scene.operating_point.voltage;
+  // The stroke of a scene that a voltage drives is no drive.
+  auto& at = there.operating_point;
+  at.frequency = scene.operating_point.frequency;
+  if (at.drive == Drive::voltage) {
+    at.voltage = scene.operating_point.voltage;
+  } else {
+    at.stroke = scene.operating_point.stroke * scene.operating_point.stroke_scale;
+    at.stroke_scale = 1;
+  }
   return there;
 }
 
@@ -66,10 +72,13 @@ std::vector<CurvePoint> HybridLevel::curve(const Scene& scene, std::span<const d
       const std::size_t i = open[k];
       const double error = known_error(points[k]);
       seen[i] += (seen[i].empty() ? "" : "; ") + error_text(tiers_[tier].name, error);
-      if (tier > 0 && !(error < errors[i])) continue;
+      const bool first_answer =
+          std::isfinite(points[k].flow_l_per_min) && !std::isfinite(best[i].flow_l_per_min);
+      if (tier > 0 && !(error < errors[i]) && !first_answer) continue;
       best[i] = points[k];
       best[i].tier = tiers_[tier].name;
       errors[i] = error;
+      if (error <= tolerance_ && on_point) on_point();
     }
   }
   for (std::size_t i = 0; i < best.size(); ++i) {
@@ -77,7 +86,7 @@ std::vector<CurvePoint> HybridLevel::curve(const Scene& scene, std::span<const d
     best[i].error_l_per_min = errors[i];
     best[i].why =
         seen[i] + (errors[i] <= tolerance_ ? ", within " : ", none within ") + plain_number(tolerance_);
-    if (on_point) on_point();
+    if (!(errors[i] <= tolerance_) && on_point) on_point();
   }
   return best;
 }

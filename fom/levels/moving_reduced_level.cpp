@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "fom/levels/marched_curve.hpp"
 #include "fom/scene/scene_file.hpp"
@@ -26,9 +27,11 @@ public:
     std::ofstream file(path_);
     file << text;
     file.close();
-    if (!file)
-      throw InputError("the profile of a model cannot be written", "an error of the file system",
-                       "a writable folder for temporary files (TMPDIR)", path_.string());
+    if (file) return;
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+    throw InputError("the profile of a model cannot be written", "an error of the file system",
+                     "a writable folder for temporary files (TMPDIR)", path_.string());
   }
   ~ProfileFile() {
     std::error_code ignored;
@@ -68,7 +71,20 @@ Scene scene_of_moving_model(const rom::MovingModel& model, const std::string& fi
 
 std::unique_ptr<FiniteElementLevel> reduced_march(const rom::MovingModel& model, const std::string& file,
                                                   MPI_Comm comm, PhaseTimer& timer) {
-  const ProfileFile profile(model.profile);
+  // Preparing is collective: all ranks have their profile, or none goes on.
+  std::optional<ProfileFile> written;
+  std::string why;
+  try {
+    written.emplace(model.profile);
+  } catch (const InputError& error) {
+    why = error.what();
+  }
+  int all = written ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, comm);
+  if (all == 0)
+    throw InputError("the profile of a model cannot be written", why.empty() ? "on another rank" : why,
+                     "a writable folder for temporary files (TMPDIR)", file);
+  const ProfileFile& profile = *written;
   auto level = std::make_unique<FiniteElementLevel>(whole_scene(model, file, profile), comm, timer);
   const auto& disc = level->prepared().disc;
   std::size_t cells = 0;
@@ -121,8 +137,13 @@ std::vector<CurvePoint> MovingReducedLevel::curve(const Scene& scene, std::span<
     if (!at_rest) at_head.time.periods = std::min(scene.time.periods, periods_between_heads);
     const auto run = march_until_periodic(*march_, at_head, state);
     points.push_back(curve_point(run, head));
-    points.back().error_l_per_min = box_.error_l_per_min;
-    points.back().inside_training_box = inside(scene.operating_point, head);
+    CurvePoint& point = points.back();
+    point.inside_training_box = inside(scene.operating_point, head);
+    // The runs tell of the box alone; what the march does not know of its own mean comes on top.
+    const double own = point.periodic ? 0.0 : point.standard_error_l_per_min;
+    point.error_l_per_min = *point.inside_training_box && std::isfinite(own)
+                                ? box_.error_l_per_min + own
+                                : std::numeric_limits<double>::infinity();
     at_rest = run.state == RunState::failed;
     if (at_rest) state = march_->initial_state();
     if (on_point) on_point();

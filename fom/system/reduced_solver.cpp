@@ -2,10 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "rom/fixed_domain/gmres.hpp"
+#include "rom/base/gmres.hpp"
 
 namespace undula::fom {
+namespace {
+
+/// Of the right-hand side: a matrix that is singular but for rounding leaves more.
+constexpr double largest_residual = 1e-2;
+
+} // namespace
 
 ReducedSolver::ReducedSolver(const Eigen::MatrixXd& basis, std::span<const int> row_begin,
                              std::span<const int> columns, MPI_Comm comm)
@@ -97,7 +104,7 @@ bool ReducedSolver::correct(const System& system, const Eigen::VectorXd& forces)
   const auto apply = [&](const Eigen::MatrixXd& in, Eigen::MatrixXd& out) {
     out = product(system, factors_->solve(in.col(0)));
   };
-  const auto result = rom::gmres(apply, left, change, wanted / missing, most);
+  const auto result = gmres(apply, left, change, wanted / missing, most);
   if (!(result.relative_residual <= wanted / missing)) return false;
   answer_ += factors_->solve(change.col(0));
   return true;
@@ -110,6 +117,8 @@ Eigen::VectorXd ReducedSolver::solve(std::span<const double> values, const Eigen
   if (!factors_ || !correct(system, forces)) {
     factor(system);
     answer_ = factors_->solve(forces);
+    if (!((forces - product(system, answer_)).norm() <= largest_residual * forces.norm()))
+      answer_.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return basis_ * answer_;
 }

@@ -21,7 +21,7 @@ public:
   /// V y with V^T A V y = V^T rhs, A with `values` in the places of the pattern and, on the rank that knows
   /// it, `holder` on the diagonal of row `holder_row` (-1: none). A dense LU of the projected matrix serves
   /// as long as GMRES corrects it in a few products, from the answer before: projecting costs about forty of
-  /// them. Collective; NaN where the projection is singular.
+  /// them. Collective; NaN where the projection is singular, or its answer does not solve it.
   Eigen::VectorXd solve(std::span<const double> values, const Eigen::VectorXd& rhs, int holder_row,
                         double holder);
 

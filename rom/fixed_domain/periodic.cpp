@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "rom/base/error.hpp"
-#include "rom/fixed_domain/gmres.hpp"
+#include "rom/base/gmres.hpp"
 #include "rom/fixed_domain/time_march.hpp"
 
 namespace undula::rom {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,10 +19,11 @@ struct MovingRun {
   double standard_error_l_per_min = 0; ///< of that mean
   double stroke_mm = 0;
   double fom_seconds = 0;
-  double rom_flow_l_per_min = 0; ///< NaN: the model was not asked, or failed
-  double rom_standard_error_l_per_min = 0;
-  double rom_stroke_mm = 0;
-  double rom_seconds = 0;
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double rom_flow_l_per_min = unknown; ///< NaN: the model was not asked, or failed
+  double rom_standard_error_l_per_min = unknown;
+  double rom_stroke_mm = unknown;
+  double rom_seconds = unknown;
 };
 
 struct MovingModel {
@@ -38,7 +40,8 @@ struct MovingModel {
   std::map<std::string, std::string> provenance;
 };
 
-/// Whether a file says that it holds a model of a moving domain. False for files that are none or missing.
+/// Whether a file says that it holds a model of a moving domain. False for a missing file. Throws
+/// InputError for one that is no HDF5 file.
 bool holds_moving_model(const std::string& file);
 
 /// Throws InputError for a missing, damaged or foreign file, and for numbers that do not fit together.

@@ -53,11 +53,15 @@ constexpr RunEntry run_entries[] = {
 void write_weights(Hdf5File& file, const std::string& group, const std::vector<double>& weights) {
   std::vector<int> places;
   std::vector<double> values;
-  for (std::size_t i = 0; i < weights.size(); ++i)
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!(weights[i] >= 0))
+      refuse(group, std::to_string(weights[i]) + " at " + std::to_string(i), "numbers >= 0",
+             file.path().string());
     if (weights[i] > 0) {
       places.push_back(static_cast<int>(i));
       values.push_back(weights[i]);
     }
+  }
   file.create_group(group);
   file.write_attribute(group, "count", static_cast<int>(weights.size()));
   file.write(group + "/places", places);
@@ -148,7 +152,7 @@ MovingModel load_moving_model(const std::string& name) {
   model.cell_weights = read_weights(file, "cells");
   for (const auto& range : ranges) {
     const auto bounds = file.read<double>(std::string("ranges/") + range.name, {2});
-    if (!(bounds[0] <= bounds[1]))
+    if (!(bounds[0] <= bounds[1]) || !std::isfinite(bounds[0]) || !std::isfinite(bounds[1]))
       refuse(std::string("range of ") + range.name,
              std::to_string(bounds[0]) + " to " + std::to_string(bounds[1]),
              "finite numbers, the lower one first", name);
@@ -163,6 +167,8 @@ MovingModel load_moving_model(const std::string& name) {
     for (std::size_t i = 0; i < column.size(); ++i) model.runs[i].*entry.value = column[i];
   }
   model.error_l_per_min = file.read_attribute<double>("runs", "error_l_per_min");
+  if (!(model.error_l_per_min >= 0))
+    refuse("stated error", std::to_string(model.error_l_per_min), "a number >= 0, or infinite", name);
   for (const auto& key : file.children("provenance"))
     model.provenance[key] = file.read_text("provenance/" + key);
   return model;

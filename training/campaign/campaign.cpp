@@ -5,6 +5,7 @@
 #include "fom/levels/finite_element_level.hpp"
 #include "training/campaign/rank_groups.hpp"
 #include "training/campaign/recorded_run.hpp"
+#include "training/sampling/trainable_scene.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
@@ -17,7 +18,7 @@ void run_campaign(const Scene& scene, std::span<const OperatingPoint> plan, cons
   std::unique_ptr<FiniteElementLevel> projected;
   PhaseTimer timer;
   const auto run_of = [&](const Scene& at_point) {
-    if (scene.coupling == Coupling::mapped && scene.space != Space::thin_gap) {
+    if (has_mapped_domain(scene)) {
       FiniteElementLevel level(at_point, group, timer);
       return record_run(level, at_point, after_step);
     }

@@ -1,9 +1,12 @@
 #include "training/campaign/campaign_store.hpp"
 
+#include <algorithm>
+
 #include "fom/output/scene_difference.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "training/campaign/run_record_file.hpp"
+#include "training/sampling/trainable_scene.hpp"
 
 namespace undula::training {
 namespace {
@@ -34,7 +37,7 @@ SceneStamp stamp_campaign(const Scene& scene) {
   Scene common = scene;
   common.operating_point = {scene.training.frequency_low, scene.training.stroke_low, scene.training.head_low};
   // What the runs of a moving domain record serves models of both kinds.
-  const bool mapped = scene.space != Space::thin_gap && scene.coupling == Coupling::mapped;
+  const bool mapped = has_mapped_domain(scene);
   const bool emulated = scene.training.model == ModelKind::emulator || mapped;
   if (emulated) {
     common.operating_point.drive = scene.operating_point.drive;
@@ -90,16 +93,20 @@ void CampaignStore::store(const Claim& claim, const RunRecord& record) const {
   records_.release(claim.record_);
 }
 
-std::vector<OperatingPoint> CampaignStore::recorded_points() const {
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_))
-    if (entry.path().extension() == ".h5" && entry.path().filename() != stamp_name)
-      files.insert(entry.path());
+std::vector<OperatingPoint> CampaignStore::recorded_points(std::vector<std::string>& damaged) const {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(records_.folder()))
+    if (entry.path().extension() == ".h5" && entry.path().filename() != "campaign.h5")
+      files.push_back(entry.path());
+  std::ranges::sort(files);
   std::vector<OperatingPoint> points;
   for (const auto& file : files) {
     try {
-      points.push_back(point_of_record(file, stamp_.hash));
-    } catch (const InputError&) { // no record of this campaign: nothing to learn from
+      const auto point = point_of_record(file, records_.hash());
+      check_run_record(file, records_.hash(), point);
+      points.push_back(point);
+    } catch (const InputError& error) {
+      damaged.emplace_back(error.what());
     }
   }
   return points;

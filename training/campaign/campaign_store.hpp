@@ -84,8 +84,9 @@ public:
   /// Throws InputError if there is no whole record of the point.
   RunRecord load(const OperatingPoint& point) const;
 
-  /// Points of all whole records in the folder, in the order of their names.
-  std::vector<OperatingPoint> recorded_points() const;
+  /// Points of all whole records in the folder, in the order of their names. What is wrong with a record that
+  /// is none is appended to `damaged`.
+  std::vector<OperatingPoint> recorded_points(std::vector<std::string>& damaged) const;
 
   std::filesystem::path record_file(const OperatingPoint& point) const;
 

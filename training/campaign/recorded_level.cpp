@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "fom/levels/marched_curve.hpp"
+#include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
 
@@ -21,10 +22,18 @@ std::vector<CurvePoint> RecordedLevel::curve(const Scene& scene, std::span<const
     OperatingPoint at = scene.operating_point;
     at.head = units::pressure_from_mmHg(head);
     const std::vector<OperatingPoint> plan{at};
-    int pending = static_cast<int>(store_.status(plan).pending.size());
-    MPI_Bcast(&pending, 1, MPI_INT, 0, comm_);
-    if (pending > 0) {
+    const auto is_pending = [&] {
+      int pending = static_cast<int>(store_.status(plan).pending.size());
+      MPI_Bcast(&pending, 1, MPI_INT, 0, comm_);
+      return pending > 0;
+    };
+    if (is_pending()) {
       run_campaign(scene_, plan, store_, comm_, {}, after_step_);
+      MPI_Barrier(comm_); // groups without a run are here before its record is
+      if (is_pending())
+        throw InputError("the run is being computed by another process",
+                         store_.record_file(at).filename().string(), "the same question when it has ended",
+                         "--campaign");
       ++runs_;
     }
     points.push_back(curve_point_of(scene_, store_.load(at)));

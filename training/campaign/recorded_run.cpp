@@ -52,10 +52,6 @@ struct Sampler {
   }
 };
 
-} // namespace
-
-namespace {
-
 RunRecord record_of(const Scene& scene, PeriodicRun run) {
   RunRecord record;
   record.point = scene.operating_point;

@@ -262,6 +262,7 @@ Cubature choose_cubature(PreparedScene& prepared, const Scene& scene, const Eige
   cubature.part_error = of_parts.error;
 
   cubature.cell_weights.assign(first_cell.back(), 1.0);
+  cubature.cells = static_cast<int>(first_cell.back());
   if (!nonlinear.empty()) {
     Normal solid;
     solid.add(solids.matrix(), solids.total(), 1.0);

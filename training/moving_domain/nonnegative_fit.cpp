@@ -60,6 +60,7 @@ NonnegativeFit nonnegative_fit(const Eigen::MatrixXd& gram, const Eigen::VectorX
   NonnegativeFit fit;
   const Eigen::Index count = right.size();
   fit.weights = Eigen::VectorXd::Zero(count);
+  if (square == 0) return fit;
   ActiveColumns active(gram, right);
   std::vector<char> useless(static_cast<std::size_t>(count), 0);
   const auto error = [&] {
@@ -103,6 +104,8 @@ NonnegativeFit nonnegative_fit(const Eigen::MatrixXd& gram, const Eigen::VectorX
         if (!leaves) kept.push_back(column);
       }
       active.keep(kept);
+      for (const auto column : kept) // one that depends on the others by rounding leaves as well
+        if (std::ranges::find(active.columns(), column) == active.columns().end()) fit.weights[column] = 0;
       wanted = active.solution();
     }
     for (Eigen::Index i = 0; i < wanted.size(); ++i)

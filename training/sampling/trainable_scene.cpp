@@ -8,6 +8,11 @@
 
 namespace undula::training {
 
+bool has_mapped_domain(const Scene& scene) {
+  return (scene.space == Space::plane || scene.space == Space::axisymmetric) &&
+         scene.coupling == Coupling::mapped;
+}
+
 void require_trainable(const Scene& scene) {
   require_wave_pump(scene, "undula train");
   const auto refuse = [&](bool stated, const char* what, const std::string& seen, const char* allowed,
@@ -16,7 +21,10 @@ void require_trainable(const Scene& scene) {
     throw InputError(what, seen, allowed, scene.file.string() + ", section [" + section + "]");
   };
   if (scene.training.model == ModelKind::emulator) return; // it takes what any level computes
-  if (scene.space != Space::thin_gap && scene.coupling == Coupling::mapped) {
+  if (has_mapped_domain(scene)) {
+    refuse(scene.time.scheme != TimeScheme::bdf2,
+           "a reduced model of a moving domain is made from steps of second order", "time.scheme = \"bdf1\"",
+           "scheme = \"bdf2\"", "time");
     refuse(scene.operating_point.drive != Drive::voltage,
            "a reduced model of a moving domain is driven by a voltage", "operating_point.drive = \"stroke\"",
            "drive = \"voltage\", which leaves no motion imposed; training.model = \"emulator\"",

@@ -12,4 +12,7 @@ namespace undula::training {
 /// called before the first run.
 void require_trainable(const Scene& scene);
 
+/// Finite elements on a domain that moves by a map: what a moving model is projected from.
+bool has_mapped_domain(const Scene& scene);
+
 } // namespace undula::training

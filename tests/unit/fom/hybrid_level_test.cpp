@@ -58,24 +58,26 @@ private:
   bool periodic_;
 };
 
+Scene at_voltage(double voltage) {
+  Scene scene;
+  scene.operating_point.drive = Drive::voltage;
+  scene.operating_point.voltage = voltage;
+  return scene;
+}
+
 struct Asked {
   std::vector<double> cheap, dear;
   int prepared = 0;
 
   std::vector<Tier> tiers(double cheap_error, double dear_error) {
-    return {{"cheap", {}, [this, cheap_error] { return std::make_unique<Guess>(1, cheap_error, cheap); }},
-            {"dear", {}, [this, dear_error] {
+    return {{"cheap", at_voltage(0),
+             [this, cheap_error] { return std::make_unique<Guess>(1, cheap_error, cheap); }},
+            {"dear", at_voltage(0), [this, dear_error] {
                ++prepared;
                return std::make_unique<Guess>(2, dear_error, dear);
              }}};
   }
 };
-
-Scene at_voltage(double voltage) {
-  Scene scene;
-  scene.operating_point.voltage = voltage;
-  return scene;
-}
 
 const std::vector<double> heads{10, 20, 30};
 
@@ -118,7 +120,7 @@ TEST(HybridLevel, TakesTheStandardErrorOfLevelsThatStateNone) {
   for (const bool periodic : {true, false}) {
     Asked asked;
     auto tiers = asked.tiers(1, 1);
-    tiers[1] = {"march", {}, [periodic] { return std::make_unique<March>(0.2, periodic); }};
+    tiers[1] = {"march", at_voltage(0), [periodic] { return std::make_unique<March>(0.2, periodic); }};
     HybridLevel level(tiers, 0.1);
     const auto points = level.curve(at_voltage(0), heads);
     EXPECT_EQ(points[0].tier, "march");
@@ -127,10 +129,29 @@ TEST(HybridLevel, TakesTheStandardErrorOfLevelsThatStateNone) {
   }
 }
 
+TEST(HybridLevel, AnAnswerOfUnknownErrorIsBetterThanNone) {
+  Asked asked;
+  auto tiers = asked.tiers(1, 1);
+  tiers[0] = {"failed", at_voltage(0),
+              [&asked] { return std::make_unique<Guess>(std::nan(""), 1, asked.cheap); }};
+  tiers[1] = {"march", at_voltage(0), [] { return std::make_unique<March>(std::nan(""), false); }};
+  const auto point = HybridLevel(tiers, 0.1).curve(at_voltage(0), heads).front();
+  EXPECT_EQ(point.tier, "march");
+  EXPECT_DOUBLE_EQ(point.flow_l_per_min, 100);
+}
+
+TEST(HybridLevel, TellsOfEveryHeadOnce) {
+  Asked asked;
+  HybridLevel level(asked.tiers(0.01, 0.02), 0.15);
+  int told = 0;
+  level.curve(at_voltage(0), heads, [&told] { ++told; });
+  EXPECT_EQ(told, 3);
+}
+
 TEST(HybridLevel, AnUnknownErrorIsNoSmallOne) {
   Asked asked;
   auto tiers = asked.tiers(1, 0.001);
-  tiers[0] = {"march", {}, [] { return std::make_unique<March>(std::nan(""), false); }};
+  tiers[0] = {"march", at_voltage(0), [] { return std::make_unique<March>(std::nan(""), false); }};
   HybridLevel level(tiers, 0.1);
   EXPECT_EQ(level.curve(at_voltage(0), heads).front().tier, "dear");
 }

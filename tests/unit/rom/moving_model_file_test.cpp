@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
@@ -83,7 +84,17 @@ TEST_F(MovingModelFile, RefusesWhatCannotBeAModel) {
   refused([](MovingModel& model) { model.basis(2, 1) = std::numeric_limits<double>::quiet_NaN(); });
   refused([](MovingModel& model) { model.pressure_modes = 4; });
   refused([](MovingModel& model) { model.head_low_mmHg = 80; });
+  refused([](MovingModel& model) { model.head_high_mmHg = std::numeric_limits<double>::infinity(); });
+  refused([](MovingModel& model) { model.error_l_per_min = std::numeric_limits<double>::quiet_NaN(); });
   refused([](MovingModel& model) { model.part_weights[1] = std::numeric_limits<double>::infinity(); });
+}
+
+TEST_F(MovingModelFile, WritesNoWeightThatIsNone) {
+  for (const double weight : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    auto model = small_model();
+    model.part_weights[0] = weight;
+    EXPECT_THROW(save_moving_model(model, file("bad.h5")), InputError);
+  }
 }
 
 TEST_F(MovingModelFile, RefusesAFileOfAnotherKind) {

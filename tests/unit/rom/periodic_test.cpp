@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "rom/base/error.hpp"
-#include "rom/fixed_domain/gmres.hpp"
+#include "rom/base/gmres.hpp"
 #include "rom/fixed_domain/time_march.hpp"
 #include "synthetic_operators.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace undula::rom {
+namespace undula {
 
 struct GmresResult {
   int iterations = 0;
@@ -60,4 +60,4 @@ GmresResult gmres(const Apply& apply, const Eigen::MatrixXd& b, Eigen::MatrixXd&
   return result;
 }
 
-} // namespace undula::rom
+} // namespace undula
