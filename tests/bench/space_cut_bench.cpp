@@ -1,8 +1,8 @@
 // The cut in space: microseconds per cut cell in floating point and in exact arithmetic, share of the cells
 // that fell back on exact arithmetic. A bent plate, thinner than the elements, waves through a box of
 // tetrahedra. Arguments: bricks of six tetrahedra along a side of the box, elements along the plate, height
-// of the wave in hundredths of the side (0: flat), shift of the plate in ten-thousandths of the side (0: edges
-// of the plate lie in planes of the grid).
+// of the wave in hundredths of the side (0: flat), shift of the plate in ten-thousandths of the side (0:
+// edges of the plate lie in planes of the grid).
 //
 // Sample run: space_cut_bench --benchmark_min_time=1
 #include <benchmark/benchmark.h>

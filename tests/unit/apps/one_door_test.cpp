@@ -194,7 +194,7 @@ TEST(OneDoorRefusals, TrainRefusesBeforeTheFirstRunWhatItWouldLeaveOut) {
   const std::string scene = root + "/data/scenes/wave_pump_fixed_training.toml";
   for (const auto& [settings, text] : std::vector<std::pair<Words, std::string>>{
            {{"model.coupling=explicit"}, "coupling"},
-           {{"model.coupling=mapped"}, "coupling"},
+           {{"model.coupling=mapped"}, "driven by a voltage"},
            {{"model.solid=neo-hookean"}, "linear operators"},
            {{"contact.film_mm=0.1", "contact.stiffness_dyn_per_cm2=1e4"}, "contact"},
            {{"stabilisation.velocity_scale=local"}, "penalties"},

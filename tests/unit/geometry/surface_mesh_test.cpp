@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -14,7 +15,9 @@ namespace {
 
 /// A scratch folder that goes with the test.
 struct Scratch {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / "undula_surface_mesh_test";
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() /
+      ("undula_surface_mesh_test_" + std::to_string(::getpid())); // tests run side by side
   Scratch() { std::filesystem::create_directories(folder); }
   ~Scratch() { std::filesystem::remove_all(folder); }
 };
