@@ -1,4 +1,4 @@
-// undula new wave-pump|general [FILE]: a commented scene to begin with.
+// undula new wave-pump|peristaltic-pump|general [FILE]: a commented scene to begin with.
 //   undula new wave-pump pump.toml
 //   undula new general flap.toml --all
 #include <spdlog/spdlog.h>
@@ -29,7 +29,14 @@ struct NewOptions {
 };
 
 constexpr const char* wave_pump = "wave-pump";
+constexpr const char* peristaltic_pump = "peristaltic-pump";
 constexpr const char* general = "general";
+
+std::string_view template_of(const std::string& kind) {
+  return kind == wave_pump          ? wave_pump_template()
+         : kind == peristaltic_pump ? peristaltic_pump_template()
+                                    : general_template();
+}
 
 [[noreturn]] void refuse_existing(const fs::path& file) {
   throw InputError("a new scene takes the place of no file", "\"" + file.string() + "\" is there already",
@@ -81,7 +88,7 @@ void new_scene(const NewOptions& options) {
     scene.texts["geometry.profile"] = profile.filename().string();
   }
   const std::string text = "# Every key is explained in docs/scene.md (`undula check --reference`).\n" +
-                           commented_scene(pump ? wave_pump_template() : general_template(), scene);
+                           commented_scene(template_of(options.kind), scene);
   if (pump) {
     write_new(profile, wave_pump_profile());
   }
@@ -97,8 +104,9 @@ void new_scene(const NewOptions& options) {
 
   // 3. What to do with it.
   std::cout << file.string() << "\n" << (pump ? profile.string() + "\n" : "");
-  spdlog::info("next: undula check {0}, then undula {1} {0}{2}", file.string(), pump ? "hq" : "solve",
-               pump ? "" : " --output run --plot");
+  spdlog::info("next: undula check {0}, then undula {1} {0}{2}", file.string(),
+               options.kind == general ? "solve" : "hq",
+               options.kind == general ? " --output run --plot" : "");
 }
 
 } // namespace
@@ -106,9 +114,9 @@ void new_scene(const NewOptions& options) {
 void add_new_command(CLI::App& app) {
   auto options = std::make_shared<NewOptions>();
   CLI::App* command = app.add_subcommand("new", "Write a commented scene to begin with");
-  command->add_option("kind", options->kind, "a pump from a profile, or a problem with a domain and bodies")
+  command->add_option("kind", options->kind, "a pump, or a problem with a domain and bodies")
       ->required()
-      ->check(CLI::IsMember({wave_pump, general}));
+      ->check(CLI::IsMember({wave_pump, peristaltic_pump, general}));
   command->add_option("file", options->file, "scene to write (.toml), default: KIND.toml");
   command->add_flag("--all", options->all_keys, "also the keys that keep their defaults, commented out");
   command->callback([options] { new_scene(*options); });

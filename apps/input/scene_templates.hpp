@@ -6,8 +6,9 @@
 
 namespace undula::apps {
 
-std::string_view wave_pump_template(); ///< data/scenes/wave_pump_thin_gap.toml
-std::string_view wave_pump_profile();  ///< data/profiles/wave_pump_profile.toml
-std::string_view general_template();   ///< data/scenes/flap_in_channel.toml
+std::string_view wave_pump_template();        ///< data/scenes/wave_pump_thin_gap.toml
+std::string_view wave_pump_profile();         ///< data/profiles/wave_pump_profile.toml
+std::string_view peristaltic_pump_template(); ///< data/scenes/peristaltic_pump.toml
+std::string_view general_template();          ///< data/scenes/flap_in_channel.toml
 
 } // namespace undula::apps

@@ -240,8 +240,14 @@ Json scene_schema() {
   const Json by_voltage = inside("operating_point", {{"required", Json::array({"drive"})},
                                                      {"properties", {{"drive", {{"const", "voltage"}}}}}});
 
-  Scene pump, pump_by_voltage, flow, solids;
+  const Json hose = inside("model", {{"required", Json::array({"machine"})},
+                                     {"properties", {{"machine", {{"const", "peristaltic-pump"}}}}}});
+  const Json wave_pump = both(no(general), no(hose));
+
+  Scene pump, pump_by_voltage, peristaltic, flow, solids;
   pump_by_voltage.operating_point.drive = Drive::voltage;
+  peristaltic.machine = Machine::peristaltic_pump;
+  peristaltic.operating_point.drive = Drive::rollers;
   flow.problem.general = solids.problem.general = true;
   flow.problem.domain.shape.radius = 1;
 
@@ -255,11 +261,13 @@ Json scene_schema() {
           {"properties", all_properties()},
           {"additionalProperties", false},
           {"allOf", Json::array({when(general, without_foreign_keys(flow)),
-                                 when(no(general), without_foreign_keys(pump)),
+                                 when(wave_pump, without_foreign_keys(pump)),
+                                 when(both(no(general), hose), without_foreign_keys(peristaltic)),
+                                 when(both(no(general), hose), with_required_keys(peristaltic)),
                                  when(both(general, fluid), with_required_keys(flow)),
                                  when(both(general, no(fluid)), with_required_keys(solids)),
-                                 when(both(no(general), by_voltage), with_required_keys(pump_by_voltage)),
-                                 when(both(no(general), no(by_voltage)), with_required_keys(pump))})}};
+                                 when(both(wave_pump, by_voltage), with_required_keys(pump_by_voltage)),
+                                 when(both(wave_pump, no(by_voltage)), with_required_keys(pump))})}};
 }
 
 } // namespace undula::apps

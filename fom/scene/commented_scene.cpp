@@ -69,6 +69,10 @@ public:
   std::string text() {
     Scene kind;
     kind.problem.general = scene_.contains("domain") || scene_.contains("body");
+    if (scene_.at_path("model.machine").value_or(std::string()) == "peristaltic-pump") {
+      kind.machine = Machine::peristaltic_pump;
+      kind.operating_point.drive = Drive::rollers;
+    }
     for (const SceneKey& key : scene_table()) {
       if (key.applies_to(kind)) {
         add(key, section_help(key.section()));

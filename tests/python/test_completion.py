@@ -50,7 +50,7 @@ def test_bash_knows_what_follows_an_option(scripts):
         "operating_point.stroke_scale=",
     }
     assert in_bash(scripts, "hq", "--data", "-") == set()  # a file: the shell's own completion
-    assert in_bash(scripts, "new", "") == {"wave-pump", "general"}
+    assert in_bash(scripts, "new", "") == {"wave-pump", "peristaltic-pump", "general"}
     assert in_bash(scripts, "completion", "z") == {"zsh"}
 
 

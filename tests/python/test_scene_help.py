@@ -103,7 +103,7 @@ def test_schema_has_help_for_every_key_of_the_reference(validator):
     assert compared > 150
 
 
-@pytest.mark.parametrize("kind", ["wave-pump", "general"])
+@pytest.mark.parametrize("kind", ["wave-pump", "peristaltic-pump", "general"])
 @pytest.mark.parametrize("more", [[], ["--all"]])
 def test_a_new_scene_is_valid_and_explained(validator, tmp_path, kind, more):
     printed = run_undula("new", kind, "mine.toml", *more, folder=tmp_path)[0].splitlines()
@@ -112,7 +112,7 @@ def test_a_new_scene_is_valid_and_explained(validator, tmp_path, kind, more):
     text = (tmp_path / "mine.toml").read_text()
     assert problems(validator, text) == []
     # The same values as the scene that it comes from.
-    origin = {"wave-pump": "wave_pump_thin_gap", "general": "flap_in_channel"}[kind]
+    origin = {"wave-pump": "wave_pump_thin_gap", "peristaltic-pump": "peristaltic_pump", "general": "flap_in_channel"}[kind]
     new, old = tomllib.loads(text), tomllib.loads((SOURCE / f"data/scenes/{origin}.toml").read_text())
     if kind == "wave-pump":
         assert new["geometry"].pop("profile") == "mine_profile.toml" and old["geometry"].pop("profile")
