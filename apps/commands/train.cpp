@@ -125,6 +125,12 @@ nlohmann::ordered_json to_json(const TrainedModel& trained, const std::string& f
   return result;
 }
 
+/// The scene as a model tells it: by the name of its profile, not by the place that it had on this machine.
+std::string told_scene(Scene scene) {
+  scene.profile = scene.profile.filename();
+  return scene_to_toml(scene);
+}
+
 /// Throws InputError unless the file is missing, or the model of the same scene, or a model that --force
 /// gives up.
 void check_target(const std::string& file, const Scene& scene, bool force) {
@@ -140,7 +146,9 @@ void check_target(const std::string& file, const Scene& scene, bool force) {
       const auto found = provenance.find(name);
       return found == provenance.end() ? std::string() : found->second;
     };
-    const auto differences = differing_keys(entry("scene"), scene_to_toml(scene));
+    auto differences = differing_keys(entry("scene"), told_scene(scene));
+    // Files of older versions tell the place; the hash knows the content.
+    std::erase_if(differences, [](const KeyDifference& one) { return one.key == "geometry.profile"; });
     if (force || (differences.empty() && entry("scene_hash") == scene_hash(scene))) {
       return;
     }
@@ -326,7 +334,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
       return;
     }
     auto origin = provenance(ranks);
-    origin["scene"] = scene_to_toml(scene);
+    origin["scene"] = told_scene(scene);
     origin["scene_hash"] = scene_hash(scene);
     if (emulated) {
       BuiltEmulator built = build_emulator(scene, plan, *store);
