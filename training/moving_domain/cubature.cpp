@@ -107,9 +107,11 @@ public:
   Sketch(Eigen::Index columns)
       : matrix_(Eigen::MatrixXd::Zero(sums, columns)), total_(Eigen::VectorXd::Zero(sums)) {}
 
-  /// Rows scaled to the size 1, all together.
+  /// Rows scaled so that their sum over all columns has the size 1. Where the columns cancel, as under a
+  /// constant pressure, the sum cannot be met better than to a part of what they are made of.
   void add(const Eigen::MatrixXd& unscaled) {
-    const double size = unscaled.norm();
+    constexpr double rest_of_cancelled = 0.01;
+    const double size = std::max(unscaled.rowwise().sum().norm(), rest_of_cancelled * unscaled.norm());
     if (!(size > 0)) return;
     const Eigen::MatrixXd rows = unscaled / size;
     Eigen::MatrixXd signs(sums, rows.rows());
@@ -248,7 +250,7 @@ Cubature choose_cubature(PreparedScene& prepared, const Scene& scene, const Eige
 
   Cubature cubature;
   // What continuity lacks is a flow that comes from nowhere: it counts more. The volume is one more row.
-  constexpr double by_continuity = 10;
+  constexpr double by_continuity = 3;
   Normal fluid;
   fluid.add(momentum.matrix(), momentum.total(), 1.0);
   fluid.add(continuity.matrix(), continuity.total(), by_continuity);
