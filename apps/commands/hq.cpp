@@ -190,7 +190,8 @@ Question read_question(const HqCommandOptions& options) {
         question.source.emulator ? scene_of_emulator(*question.source.emulator, options.file,
                                                      *options.frequency_Hz, {}, voltages[k])
         : question.source.moving
-            ? scene_of_moving_model(*question.source.moving, options.file, *options.frequency_Hz, voltages[k])
+            ? scene_of_moving_model(*question.source.moving, options.file, *options.frequency_Hz,
+                                    {{}, voltages[k]})
             : with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
   }
   const Scene& scene = question.scenes.front();

@@ -43,14 +43,10 @@ LevelSource read_model_source(const std::string& file, const std::vector<std::st
     if (!frequency_Hz) {
       throw CLI::RequiredError("--frequency");
     }
-    if (stroke_mm) {
-      throw InputError("this model is driven by a voltage", "--stroke " + exact_number(*stroke_mm),
-                       "--voltage", file);
-    }
     LevelSource source;
     source.file = file;
     source.moving = rom::load_moving_model(file);
-    source.scene = scene_of_moving_model(*source.moving, file, *frequency_Hz, voltage_V);
+    source.scene = scene_of_moving_model(*source.moving, file, *frequency_Hz, {stroke_mm, voltage_V});
     return source;
   }
   if (voltage_V) {

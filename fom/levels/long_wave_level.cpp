@@ -1,5 +1,6 @@
 #include "fom/levels/long_wave_level.hpp"
 
+#include "fom/levels/stepped_marcher.hpp"
 #include "fom/long_wave/hose_flow.hpp"
 #include "fom/long_wave/hose_picture.hpp"
 #include "fom/machines/peristaltic_pump/hose_remarks.hpp"
@@ -12,16 +13,6 @@ HoseModel timed_model(const Scene& scene, PhaseTimer& timer) {
   return hose_model(scene);
 }
 
-class LongWaveMarcher final : public Marcher {
-public:
-  LongWaveMarcher(const HoseModel& model, const Scene& scene, PhaseTimer& timer)
-      : stepper_(model, scene, timer) {}
-  Observation advance(State& state) override { return stepper_.advance(state); }
-
-private:
-  HoseStepper stepper_;
-};
-
 } // namespace
 
 LongWaveLevel::LongWaveLevel(const Scene& scene, PhaseTimer& timer) : model_(timed_model(scene, timer)) {}
@@ -33,7 +24,7 @@ std::vector<std::string> LongWaveLevel::remarks(const Scene& scene, std::span<co
 State LongWaveLevel::initial_state() const { return hose_state_at_rest(model_); }
 
 std::unique_ptr<Marcher> LongWaveLevel::start(const Scene& scene, const State&, PhaseTimer& timer) {
-  return std::make_unique<LongWaveMarcher>(model_, scene, timer);
+  return std::make_unique<SteppedMarcher<HoseStepper>>(model_, scene, timer);
 }
 
 LevelView LongWaveLevel::view(const Scene& scene) const {

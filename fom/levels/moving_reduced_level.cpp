@@ -13,6 +13,8 @@
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
+#include "rom/curve/error_estimate.hpp"
+#include "rom/curve/hq_curve.hpp"
 
 namespace undula::fom {
 namespace {
@@ -53,18 +55,17 @@ Scene whole_scene(const rom::MovingModel& model, const std::string& file, const 
 } // namespace
 
 Scene scene_of_moving_model(const rom::MovingModel& model, const std::string& file, double frequency_Hz,
-                            const std::optional<double>& voltage_V) {
-  if (!voltage_V)
-    throw InputError("this model is driven by a voltage", "no voltage", "--voltage, in V", file);
+                            const rom::StatedDrive& drive) {
+  const double voltage = rom::drive_of(drive, true, "the model", file);
+  if (!(frequency_Hz > 0) || !std::isfinite(frequency_Hz))
+    throw InputError("no operating point: frequency (Hz)", plain_number(frequency_Hz), "a finite number > 0",
+                     file);
   const ProfileFile profile(model.profile);
   Scene scene = whole_scene(model, file, profile);
-  if (!(frequency_Hz > 0) || !std::isfinite(frequency_Hz) || !(*voltage_V > 0) || !std::isfinite(*voltage_V))
-    throw InputError("no operating point",
-                     exact_number(frequency_Hz) + " Hz, " + exact_number(*voltage_V) + " V", "numbers > 0",
-                     "--frequency, --voltage");
   scene.operating_point.frequency = frequency_Hz;
-  scene.operating_point.voltage = *voltage_V;
-  scene.operating_point.head = units::pressure_from_mmHg((model.head_low_mmHg + model.head_high_mmHg) / 2);
+  scene.operating_point.voltage = voltage;
+  scene.operating_point.head =
+      units::pressure_from_mmHg((model.box.head_low_mmHg + model.box.head_high_mmHg) / 2);
   scene.profile.clear();
   return scene;
 }
@@ -109,20 +110,9 @@ std::unique_ptr<FiniteElementLevel> reduced_march(const rom::MovingModel& model,
 MovingReducedLevel::MovingReducedLevel(const rom::MovingModel& model, const std::string& file, MPI_Comm comm,
                                        PhaseTimer& timer)
     : march_(reduced_march(model, file, comm, timer)),
-      box_(model),
-      modes_(static_cast<int>(model.basis.cols())) {
-  box_.basis.resize(0, 0);
-}
-
-bool MovingReducedLevel::inside(const OperatingPoint& at, double head_mmHg) const {
-  const auto within = [](double value, double low, double high) {
-    const double slack = 1e-9 * std::max(std::abs(low), std::abs(high));
-    return value >= low - slack && value <= high + slack;
-  };
-  return within(at.frequency, box_.frequency_low_Hz, box_.frequency_high_Hz) &&
-         within(at.voltage, box_.voltage_low_V, box_.voltage_high_V) &&
-         within(head_mmHg, box_.head_low_mmHg, box_.head_high_mmHg);
-}
+      box_(model.box),
+      error_l_per_min_(model.error_l_per_min),
+      modes_(static_cast<int>(model.basis.cols())) {}
 
 std::vector<CurvePoint> MovingReducedLevel::curve(const Scene& scene, std::span<const double> heads_mmHg,
                                                   const std::function<void()>& on_point) {
@@ -138,11 +128,12 @@ std::vector<CurvePoint> MovingReducedLevel::curve(const Scene& scene, std::span<
     const auto run = march_until_periodic(*march_, at_head, state);
     points.push_back(curve_point(run, head));
     CurvePoint& point = points.back();
-    point.inside_training_box = inside(scene.operating_point, head);
+    const auto& at = scene.operating_point;
+    point.inside_training_box = rom::growth_outside_box(box_, at.frequency, at.voltage, head) == 1;
     // The runs tell of the box alone; what the march does not know of its own mean comes on top.
     const double own = point.periodic ? 0.0 : point.standard_error_l_per_min;
     point.error_l_per_min = *point.inside_training_box && std::isfinite(own)
-                                ? box_.error_l_per_min + own
+                                ? error_l_per_min_ + own
                                 : std::numeric_limits<double>::infinity();
     at_rest = run.state == RunState::failed;
     if (at_rest) state = march_->initial_state();
@@ -153,14 +144,8 @@ std::vector<CurvePoint> MovingReducedLevel::curve(const Scene& scene, std::span<
 
 std::vector<std::string> MovingReducedLevel::remarks(const Scene& scene,
                                                      std::span<const double> heads_mmHg) const {
-  std::vector<std::string> sentences;
-  if (std::ranges::any_of(heads_mmHg, [&](double head) { return !inside(scene.operating_point, head); }))
-    sentences.push_back("frequency, voltage or a head lies outside of the ranges of the model's runs (" +
-                        plain_number(box_.frequency_low_Hz) + " to " + plain_number(box_.frequency_high_Hz) +
-                        " Hz, " + plain_number(box_.voltage_low_V) + " to " +
-                        plain_number(box_.voltage_high_V) + " V, " + plain_number(box_.head_low_mmHg) +
-                        " to " + plain_number(box_.head_high_mmHg) + " mmHg): its error there is not known");
-  return sentences;
+  const auto& at = scene.operating_point;
+  return rom::outside_training_box(box_, at.frequency, at.voltage, heads_mmHg, {"voltage", "V"});
 }
 
 } // namespace undula::fom

@@ -4,15 +4,16 @@
 #include <optional>
 
 #include "fom/levels/finite_element_level.hpp"
+#include "rom/curve/stated_drive.hpp"
 #include "rom/moving_domain/moving_model.hpp"
 
 namespace undula::fom {
 
 /// The scene that a model was made from, whole, at an operating point of its own: frequency, voltage, and the
 /// middle of the range of heads. Its profile is that of the model; Scene::profile names no file. Throws
-/// InputError for a missing voltage and for numbers that are no operating point.
+/// InputError for a missing voltage, a stroke, and numbers that are no operating point.
 Scene scene_of_moving_model(const rom::MovingModel& model, const std::string& file, double frequency_Hz,
-                            const std::optional<double>& voltage_V);
+                            const rom::StatedDrive& drive);
 
 /// The full order of the model's scene in its reduced space. Throws InputError where mesh and cut are not
 /// those that the modes belong to. Collective over `comm`.
@@ -36,10 +37,9 @@ public:
   std::vector<std::string> remarks(const Scene& scene, std::span<const double> heads_mmHg) const override;
 
 private:
-  bool inside(const OperatingPoint& at, double head_mmHg) const;
-
   std::unique_ptr<FiniteElementLevel> march_;
-  rom::MovingModel box_; ///< without modes and weights
+  rom::TrainingBox box_;   ///< rom::MovingModel::box
+  double error_l_per_min_; ///< of the box
   int modes_ = 0;
 };
 

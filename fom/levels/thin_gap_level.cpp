@@ -1,21 +1,9 @@
 #include "fom/levels/thin_gap_level.hpp"
 
 #include "fom/levels/prepared_scene.hpp"
+#include "fom/levels/stepped_marcher.hpp"
 
 namespace undula::fom {
-namespace {
-
-class ThinGapMarcher final : public Marcher {
-public:
-  ThinGapMarcher(const ThinGapModel& model, const Scene& scene, PhaseTimer& timer)
-      : stepper_(model, scene, timer) {}
-  Observation advance(State& state) override { return stepper_.advance(state); }
-
-private:
-  ThinGapStepper stepper_;
-};
-
-} // namespace
 
 ThinGapLevel::ThinGapLevel(const Scene& scene, PhaseTimer& timer) : model_(prepare_thin_gap(scene, timer)) {}
 
@@ -26,7 +14,7 @@ std::vector<std::string> ThinGapLevel::remarks(const Scene&, std::span<const dou
 State ThinGapLevel::initial_state() const { return fom::initial_state(model_); }
 
 std::unique_ptr<Marcher> ThinGapLevel::start(const Scene& scene, const State&, PhaseTimer& timer) {
-  return std::make_unique<ThinGapMarcher>(model_, scene, timer);
+  return std::make_unique<SteppedMarcher<ThinGapStepper>>(model_, scene, timer);
 }
 
 LevelView ThinGapLevel::view(const Scene& scene) const {

@@ -4,6 +4,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
+#include "rom/base/model_file_parts.hpp"
 #include "rom/emulator/emulator.hpp"
 
 namespace undula::rom {
@@ -128,11 +129,6 @@ void check_meaning(const Emulator& emulator, const std::string& file) {
 
 std::string group_of(std::size_t quantity) { return "quantities/" + std::to_string(quantity); }
 
-std::string kind_of(const Hdf5File& file) {
-  return file.has_attribute("/", "kind") ? file.read_attribute<std::string>("/", "kind")
-                                         : "another program's";
-}
-
 } // namespace
 
 void save_emulator(const Emulator& emulator, const std::string& name) {
@@ -152,8 +148,7 @@ void save_emulator(const Emulator& emulator, const std::string& name) {
   for (std::size_t q = 0; q < emulator.quantities.size(); ++q)
     write_quantity(file, group_of(q), emulator.quantities[q]);
   write_runs(file, emulator.runs);
-  file.create_group("provenance");
-  for (const auto& [key, text] : emulator.provenance) file.write_text("provenance/" + key, text);
+  write_provenance(file, emulator.provenance);
   file.commit();
 }
 
@@ -161,9 +156,7 @@ bool holds_emulator(const std::string& name) { return kind_of(Hdf5File::open_unc
 
 Emulator load_emulator(const std::string& name) {
   const auto file = Hdf5File::open_sealed(name);
-  if (const auto kind = kind_of(file); kind != file_kind)
-    throw InputError("not an emulator", "a file of kind '" + kind + "'",
-                     std::string("kind '") + file_kind + "'", name);
+  check_kind(file, file_kind, "not an emulator");
   if (const int version = file.read_attribute<int>("/", "format_version"); version != file_version)
     throw InputError("emulator file of another format version", std::to_string(version),
                      std::to_string(file_version), name);
@@ -181,8 +174,7 @@ Emulator load_emulator(const std::string& name) {
   for (std::size_t q = 0; q < static_cast<std::size_t>(count); ++q)
     emulator.quantities.push_back(read_quantity(file, group_of(q)));
   emulator.runs = read_runs(file);
-  for (const auto& key : file.children("provenance"))
-    emulator.provenance[key] = file.read_text("provenance/" + key);
+  emulator.provenance = read_provenance(file);
   check_meaning(emulator, name);
   return emulator;
 }

@@ -4,6 +4,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
+#include "rom/base/model_file_parts.hpp"
 #include "rom/fixed_domain/model.hpp"
 
 namespace undula::rom {
@@ -207,12 +208,8 @@ void check_meaning(const Model& model, const std::string& file) {
 }
 
 /// Returns the version of the format.
-int check_kind(const Hdf5File& file) {
-  const auto kind =
-      file.has_attribute("/", "kind") ? file.read_attribute<std::string>("/", "kind") : "another program's";
-  if (kind != file_kind)
-    throw InputError("not a reduced model", "a file of kind '" + kind + "'",
-                     std::string("kind '") + file_kind + "'", file.path().string());
+int checked_version(const Hdf5File& file) {
+  check_kind(file, file_kind, "not a reduced model");
   const int version = file.read_attribute<int>("/", "format_version");
   if (version != file_version && version != unsealed_version)
     throw InputError("model file of another format version", std::to_string(version),
@@ -247,15 +244,14 @@ void save_model(const Model& model, const std::string& name) {
   write_references(file, model.references);
   file.write("error_estimate/safety", std::vector<double>{model.error_safety}, {}, "1");
   file.write("error_estimate/floor", std::vector<double>{model.error_floor_l_per_min}, {}, "l/min");
-  file.create_group("provenance");
-  for (const auto& [key, text] : model.provenance) file.write_text("provenance/" + key, text);
+  write_provenance(file, model.provenance);
   file.commit();
 }
 
 Model load_model(const std::string& name) {
   const auto file = Hdf5File::open_read(name);
   Model model;
-  model.sealed = check_kind(file) != unsealed_version;
+  model.sealed = checked_version(file) != unsealed_version;
   auto& o = model.operators;
   o.velocity_modes = read_count(file, "operators", "velocity_modes", 1);
   o.supremizer_modes = read_count(file, "operators", "supremizer_modes", 0);
@@ -274,8 +270,7 @@ Model load_model(const std::string& name) {
   model.references = read_references(file);
   model.error_safety = file.read<double>("error_estimate/safety", {}).front();
   model.error_floor_l_per_min = file.read<double>("error_estimate/floor", {}).front();
-  for (const auto& key : file.children("provenance"))
-    model.provenance[key] = file.read_text("provenance/" + key);
+  model.provenance = read_provenance(file);
   check_meaning(model, name);
   return model;
 }

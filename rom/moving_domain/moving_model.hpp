@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "rom/fixed_domain/model.hpp"
+
 namespace undula::rom {
 
 /// One full-order run and what the model makes of its operating point.
@@ -33,8 +35,7 @@ struct MovingModel {
   int pressure_modes = 0;           ///< the last columns
   std::vector<double> part_weights; ///< by part of the cut, most of them 0; empty: all 1
   std::vector<double> cell_weights; ///< by cell of the solids, the same
-  double frequency_low_Hz = 0, frequency_high_Hz = 0, voltage_low_V = 0, voltage_high_V = 0,
-         head_low_mmHg = 0, head_high_mmHg = 0;
+  TrainingBox box;                  ///< the voltage, V, in the place of the stroke
   std::vector<MovingRun> runs;
   double error_l_per_min = 0; ///< nine in ten held-out runs are within; infinite: none was held out
   std::map<std::string, std::string> provenance;

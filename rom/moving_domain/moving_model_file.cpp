@@ -4,6 +4,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
+#include "rom/base/model_file_parts.hpp"
 #include "rom/moving_domain/moving_model.hpp"
 
 namespace undula::rom {
@@ -14,14 +15,14 @@ constexpr int file_version = 1;
 
 struct RangeEntry {
   const char* name;
-  double MovingModel::*low;
-  double MovingModel::*high;
+  double TrainingBox::*low;
+  double TrainingBox::*high;
   const char* unit;
 };
 constexpr RangeEntry ranges[] = {
-    {"frequency", &MovingModel::frequency_low_Hz, &MovingModel::frequency_high_Hz, "Hz"},
-    {"voltage", &MovingModel::voltage_low_V, &MovingModel::voltage_high_V, "V"},
-    {"head", &MovingModel::head_low_mmHg, &MovingModel::head_high_mmHg, "mmHg"},
+    {"frequency", &TrainingBox::frequency_low_Hz, &TrainingBox::frequency_high_Hz, "Hz"},
+    {"voltage", &TrainingBox::stroke_low_mm, &TrainingBox::stroke_high_mm, "V"},
+    {"head", &TrainingBox::head_low_mmHg, &TrainingBox::head_high_mmHg, "mmHg"},
 };
 
 struct RunEntry {
@@ -85,11 +86,6 @@ std::vector<double> read_weights(const Hdf5File& file, const std::string& group)
   return weights;
 }
 
-std::string kind_of(const Hdf5File& file) {
-  return file.has_attribute("/", "kind") ? file.read_attribute<std::string>("/", "kind")
-                                         : "another program's";
-}
-
 } // namespace
 
 bool holds_moving_model(const std::string& name) {
@@ -111,8 +107,8 @@ void save_moving_model(const MovingModel& model, const std::string& name) {
   write_weights(file, "cells", model.cell_weights);
   file.create_group("ranges");
   for (const auto& range : ranges)
-    file.write(std::string("ranges/") + range.name, std::vector<double>{model.*range.low, model.*range.high},
-               {2}, range.unit);
+    file.write(std::string("ranges/") + range.name,
+               std::vector<double>{model.box.*range.low, model.box.*range.high}, {2}, range.unit);
   std::vector<int> held_out;
   for (const auto& run : model.runs) held_out.push_back(run.held_out ? 1 : 0);
   file.write("runs/held_out", held_out);
@@ -122,16 +118,13 @@ void save_moving_model(const MovingModel& model, const std::string& name) {
     file.write(std::string("runs/") + entry.name, values, {values.size()}, entry.unit);
   }
   file.write_attribute("runs", "error_l_per_min", model.error_l_per_min);
-  file.create_group("provenance");
-  for (const auto& [key, text] : model.provenance) file.write_text("provenance/" + key, text);
+  write_provenance(file, model.provenance);
   file.commit();
 }
 
 MovingModel load_moving_model(const std::string& name) {
   const auto file = Hdf5File::open_sealed(name);
-  if (const auto kind = kind_of(file); kind != file_kind)
-    throw InputError("not a model of a moving domain", "a file of kind '" + kind + "'",
-                     std::string("kind '") + file_kind + "'", name);
+  check_kind(file, file_kind, "not a model of a moving domain");
   if (const int version = file.read_attribute<int>("/", "format_version"); version != file_version)
     throw InputError("model of a moving domain in another format version", std::to_string(version),
                      std::to_string(file_version), name);
@@ -156,8 +149,8 @@ MovingModel load_moving_model(const std::string& name) {
       refuse(std::string("range of ") + range.name,
              std::to_string(bounds[0]) + " to " + std::to_string(bounds[1]),
              "finite numbers, the lower one first", name);
-    model.*range.low = bounds[0];
-    model.*range.high = bounds[1];
+    model.box.*range.low = bounds[0];
+    model.box.*range.high = bounds[1];
   }
   const auto held_out = file.read<int>("runs/held_out");
   model.runs.resize(held_out.size());
@@ -169,8 +162,7 @@ MovingModel load_moving_model(const std::string& name) {
   model.error_l_per_min = file.read_attribute<double>("runs", "error_l_per_min");
   if (!(model.error_l_per_min >= 0))
     refuse("stated error", std::to_string(model.error_l_per_min), "a number >= 0, or infinite", name);
-  for (const auto& key : file.children("provenance"))
-    model.provenance[key] = file.read_text("provenance/" + key);
+  model.provenance = read_provenance(file);
   return model;
 }
 

@@ -7,9 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/cut/cut.hpp"
-#include "geometry/cut/dof_matching.hpp"
 #include "geometry/wave_pump/pump.hpp"
+#include "tests/bench/cut_measures.hpp"
 
 namespace {
 
@@ -38,64 +37,11 @@ struct Pump {
   std::vector<SimplexMesh<2>> solids;
 };
 
-void cut(benchmark::State& state, bool exact) {
-  const Pump pump(state);
-  CutOptions options;
-  options.exact = exact;
-  const BackgroundCutter<2> cutter(pump.background, pump.solids, options);
-  int step = 0;
-  double cut_cells = 0, exact_cells = 0;
-  for (auto _ : state) {
-    state.PauseTiming();
-    const auto solids = pump.placed(step++);
-    state.ResumeTiming();
-    const auto result = cutter.cut(solids);
-    benchmark::DoNotOptimize(result.parts.data());
-    state.PauseTiming();
-    for (std::size_t c = 0; c < result.mesh.cells.size(); ++c)
-      cut_cells += result.cell_parts[c + 1] > result.cell_parts[c] && result.parts[result.cell_parts[c]].cut;
-    if (!exact) exact_cells += result.exact_cells;
-    state.ResumeTiming();
-  }
-  state.counters["cells"] = static_cast<double>(pump.background.cells.size());
-  state.counters["cut_cells"] = cut_cells / step;
-  state.counters["fell_back"] = exact_cells / step;
-  // Inverted rate: seconds per cut cell.
-  state.counters["s_per_cut_cell"] =
-      benchmark::Counter(cut_cells, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
-void cut_in_floating_point(benchmark::State& state) { cut(state, false); }
-void cut_in_exact_arithmetic(benchmark::State& state) { cut(state, true); }
-
-void prepare_the_background(benchmark::State& state) {
-  const Pump pump(state);
-  for (auto _ : state) {
-    const BackgroundCutter<2> cutter(pump.background, pump.solids, {});
-    benchmark::DoNotOptimize(&cutter);
-  }
-}
-
-void number_the_unknowns(benchmark::State& state) {
-  const Pump pump(state);
-  const auto result = BackgroundCutter<2>(pump.background, pump.solids, {}).cut(pump.placed(0));
-  std::size_t unknowns = 0;
-  for (auto _ : state) unknowns = build_dof_sets(result).dof_point.size();
-  state.counters["scalar_unknowns"] = static_cast<double>(unknowns);
-}
-
-void match_the_unknowns(benchmark::State& state) {
-  const Pump pump(state);
-  const BackgroundCutter<2> cutter(pump.background, pump.solids, {});
-  const auto before = cutter.cut(pump.placed(0)), now = cutter.cut(pump.placed(1));
-  const auto dofs_before = build_dof_sets(before), dofs_now = build_dof_sets(now);
-  int fresh = 0;
-  for (auto _ : state) {
-    const auto match = match_dofs(before, dofs_before, now, dofs_now);
-    fresh = static_cast<int>(std::count(match.begin(), match.end(), -1));
-  }
-  state.counters["new_unknowns"] = fresh;
-}
+void cut_in_floating_point(benchmark::State& state) { bench::cut<2, Pump>(state, false); }
+void cut_in_exact_arithmetic(benchmark::State& state) { bench::cut<2, Pump>(state, true); }
+void prepare_the_background(benchmark::State& state) { bench::prepare<2, Pump>(state); }
+void number_the_unknowns(benchmark::State& state) { bench::number<2, Pump>(state); }
+void match_the_unknowns(benchmark::State& state) { bench::match<2, Pump>(state); }
 
 // Amplitude 0: the membrane at rest, as drawn.
 void sizes(benchmark::internal::Benchmark* bench) {

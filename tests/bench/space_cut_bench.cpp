@@ -11,9 +11,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/cut/cut.hpp"
-#include "geometry/cut/dof_matching.hpp"
 #include "geometry/mesh/box_mesh.hpp"
+#include "tests/bench/cut_measures.hpp"
 
 namespace {
 
@@ -40,64 +39,11 @@ struct Plate {
   std::vector<SimplexMesh<3>> solids;
 };
 
-void cut(benchmark::State& state, bool exact) {
-  const Plate plate(state);
-  CutOptions options;
-  options.exact = exact;
-  const BackgroundCutter<3> cutter(plate.background, plate.solids, options);
-  int step = 0;
-  double cut_cells = 0, exact_cells = 0, simplices = 0;
-  for (auto _ : state) {
-    state.PauseTiming();
-    const auto solids = plate.placed(step++);
-    state.ResumeTiming();
-    const auto result = cutter.cut(solids);
-    benchmark::DoNotOptimize(result.parts.data());
-    state.PauseTiming();
-    for (std::size_t c = 0; c < result.mesh.cells.size(); ++c)
-      cut_cells += result.cell_parts[c + 1] > result.cell_parts[c] && result.parts[result.cell_parts[c]].cut;
-    simplices += static_cast<double>(result.simplices.size());
-    if (!exact) exact_cells += result.exact_cells;
-    state.ResumeTiming();
-  }
-  state.counters["cells"] = static_cast<double>(plate.background.cells.size());
-  state.counters["cut_cells"] = cut_cells / step;
-  state.counters["fell_back"] = exact_cells / step;
-  state.counters["simplices_per_cut_cell"] = simplices / cut_cells;
-  // Inverted rate: seconds per cut cell.
-  state.counters["s_per_cut_cell"] =
-      benchmark::Counter(cut_cells, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
-void cut_in_floating_point(benchmark::State& state) { cut(state, false); }
-void cut_in_exact_arithmetic(benchmark::State& state) { cut(state, true); }
-
-void prepare_the_background(benchmark::State& state) {
-  const Plate plate(state);
-  for (auto _ : state) {
-    const BackgroundCutter<3> cutter(plate.background, plate.solids, {});
-    benchmark::DoNotOptimize(&cutter);
-  }
-}
-
-void number_the_unknowns(benchmark::State& state) {
-  const Plate plate(state);
-  const auto result = BackgroundCutter<3>(plate.background, plate.solids, {}).cut(plate.placed(0));
-  std::size_t unknowns = 0;
-  for (auto _ : state) unknowns = build_dof_sets(result).dof_point.size();
-  state.counters["scalar_unknowns"] = static_cast<double>(unknowns);
-}
-
-void match_the_unknowns(benchmark::State& state) {
-  const Plate plate(state);
-  const BackgroundCutter<3> cutter(plate.background, plate.solids, {});
-  const auto before = cutter.cut(plate.placed(0)), now = cutter.cut(plate.placed(1));
-  const auto dofs_before = build_dof_sets(before), dofs_now = build_dof_sets(now);
-  for (auto _ : state) {
-    const auto match = match_dofs(before, dofs_before, now, dofs_now);
-    benchmark::DoNotOptimize(match.data());
-  }
-}
+void cut_in_floating_point(benchmark::State& state) { bench::cut<3, Plate>(state, false); }
+void cut_in_exact_arithmetic(benchmark::State& state) { bench::cut<3, Plate>(state, true); }
+void prepare_the_background(benchmark::State& state) { bench::prepare<3, Plate>(state); }
+void number_the_unknowns(benchmark::State& state) { bench::number<3, Plate>(state); }
+void match_the_unknowns(benchmark::State& state) { bench::match<3, Plate>(state); }
 
 BENCHMARK(cut_in_floating_point)
     ->Args({24, 20, 5, 13})

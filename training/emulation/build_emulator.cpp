@@ -10,6 +10,7 @@
 #include "rom/base/units.hpp"
 #include "training/campaign/recorded_level.hpp"
 #include "training/emulation/fit_process.hpp"
+#include "training/emulation/quantile.hpp"
 
 namespace undula::training {
 namespace {
@@ -45,12 +46,6 @@ std::optional<KnownRun> known_run(const Scene& scene, const RunRecord& record, s
   if (const auto total = record.seconds.find("total"); total != record.seconds.end())
     known.run.seconds = total->second;
   return known;
-}
-
-double quantile(std::vector<double> values, double part) {
-  std::ranges::sort(values);
-  const auto place = static_cast<std::size_t>(std::ceil(part * static_cast<double>(values.size())));
-  return values[std::min(values.size(), std::max<std::size_t>(place, 1)) - 1];
 }
 
 EmulatorScore score_of(const std::vector<rom::EmulatorRun>& runs, bool held_out) {
@@ -136,7 +131,6 @@ BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const
     std::vector<double> parts;
     for (Eigen::Index i = 0; i < count; ++i)
       parts.push_back(std::abs(values[i] - left_out(i, 0)) / left_out(i, 1));
-    constexpr double nine_in_ten = 0.9;
     constexpr double least = 1.645; // of a normal distribution: few runs can be met by luck
     const double factor = std::max(quantile(parts, nine_in_ten), least);
     if (is_flow)

@@ -10,6 +10,7 @@
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/recorded_level.hpp"
+#include "training/emulation/quantile.hpp"
 
 namespace undula::training {
 namespace {
@@ -49,7 +50,7 @@ void ask_model(rom::MovingModel& model, const std::string& name) {
   MovingReducedLevel level(model, name, MPI_COMM_SELF, timer);
   for (auto& run : model.runs) {
     if (!run.held_out) continue;
-    const Scene scene = scene_of_moving_model(model, name, run.frequency_Hz, run.voltage_V);
+    const Scene scene = scene_of_moving_model(model, name, run.frequency_Hz, {{}, run.voltage_V});
     const double head = run.head_mmHg;
     const auto point = level.curve(scene, std::span(&head, 1)).front();
     run.rom_flow_l_per_min = point.flow_l_per_min;
@@ -66,10 +67,7 @@ double stated_error(const std::vector<rom::MovingRun>& runs) {
       errors.push_back(std::isfinite(run.rom_flow_l_per_min)
                            ? std::abs(run.rom_flow_l_per_min - run.flow_l_per_min)
                            : std::numeric_limits<double>::infinity());
-  if (errors.empty()) return std::numeric_limits<double>::infinity();
-  std::ranges::sort(errors);
-  const auto place = static_cast<std::size_t>(std::ceil(0.9 * static_cast<double>(errors.size())));
-  return errors[std::max<std::size_t>(place, 1) - 1];
+  return errors.empty() ? std::numeric_limits<double>::infinity() : quantile(errors, nine_in_ten);
 }
 
 } // namespace
@@ -102,12 +100,12 @@ BuiltMovingModel build_moving_model(const Scene& scene, const SamplingPlan& plan
   model.scene = scene_to_toml(scene);
   model.profile = read_text_file(scene.profile);
   const auto& box = scene.training;
-  model.frequency_low_Hz = box.frequency_low;
-  model.frequency_high_Hz = box.frequency_high;
-  model.voltage_low_V = box.voltage_low;
-  model.voltage_high_V = box.voltage_high;
-  model.head_low_mmHg = units::pressure_to_mmHg(box.head_low);
-  model.head_high_mmHg = units::pressure_to_mmHg(box.head_high);
+  model.box = {box.frequency_low,
+               box.frequency_high,
+               box.voltage_low,
+               box.voltage_high,
+               units::pressure_to_mmHg(box.head_low),
+               units::pressure_to_mmHg(box.head_high)};
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const auto* runs : {&training, &held_out})
     for (const auto& record : *runs) {

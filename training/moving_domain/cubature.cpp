@@ -174,8 +174,7 @@ Cubature choose_cubature(PreparedScene& prepared, const Scene& scene, const Eige
   // Operators of every colour; solids have their own forces.
   std::vector<std::shared_ptr<ReducedSpace>> weights;
   std::vector<Operators<2>> operators;
-  const auto first_map = [&] { disc.map = map_at(runs.front(), 2, 1.0); };
-  first_map();
+  disc.map = map_at(runs.front(), 2, 1.0); // any map: only the pattern stays
   for (const auto& colour : colours) {
     auto space = std::make_shared<ReducedSpace>();
     space->part_weights.assign(disc.cut.parts.size(), 0.0);

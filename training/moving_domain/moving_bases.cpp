@@ -3,11 +3,12 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fom/time/time_stepper.hpp"
 #include "rom/base/error.hpp"
 #include "training/campaign/recorded_run.hpp"
-#include "training/reduction/bases.hpp"
+#include "training/reduction/inner_products.hpp"
 #include "training/reduction/pod.hpp"
 
 namespace undula::training {
@@ -61,10 +62,9 @@ public:
     SparseMatrix sum = operators.physical + operators.stabilisation;
     matrix_ = sum + by_time * operators.mass;
     std::vector<int> all(static_cast<std::size_t>(disc_.fluid_unknowns()));
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    std::iota(all.begin(), all.end(), 0);
     factor(all, whole_);
-    std::vector<int> velocities = velocity_unknowns(disc_);
-    factor(velocities, velocities_);
+    factor(velocity_unknowns(disc_), velocities_);
   }
 
   /// Velocity of the fluid, on top of the solids' in `moved`, that their motion drives.
@@ -86,21 +86,9 @@ private:
   };
 
   void factor(const std::vector<int>& unknowns, Block& block) {
-    std::vector<int> place(static_cast<std::size_t>(disc_.unknowns()), -1);
     for (const int unknown : unknowns)
-      if (!disc_.is_constrained[static_cast<std::size_t>(unknown)]) {
-        place[static_cast<std::size_t>(unknown)] = static_cast<int>(block.free.size());
-        block.free.push_back(unknown);
-      }
-    Triplets entries;
-    for (const int row : block.free)
-      for (SparseMatrix::InnerIterator entry(matrix_, row); entry; ++entry)
-        if (const int column = place[static_cast<std::size_t>(entry.col())]; column >= 0)
-          entries.emplace_back(place[static_cast<std::size_t>(row)], column, entry.value());
-    const auto size = static_cast<Eigen::Index>(block.free.size());
-    Eigen::SparseMatrix<double> matrix(size, size);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    block.factors.compute(matrix);
+      if (!disc_.is_constrained[static_cast<std::size_t>(unknown)]) block.free.push_back(unknown);
+    block.factors.compute(submatrix(matrix_, block.free));
     if (block.factors.info() != Eigen::Success)
       throw NumericsError("the fluid's equations at rest could not be factored", "training",
                           "larger Nitsche and ghost penalties (section [stabilisation])");
@@ -176,20 +164,11 @@ MovingBases build_moving_bases(const PreparedScene& prepared, const Scene& scene
   const auto displacement =
       pod(displacements, Eigen::SparseMatrix<double>(inner), options(plan.displacement_modes));
 
-  Triplets pressure_entries;
-  for (const int part : prepared.operators.own_parts) {
-    const auto moments = integrate_part(disc, part, prepared.operators.geometries[part]).moments;
-    const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        pressure_entries.emplace_back(disc.pressure_unknown(nodes[i]), disc.pressure_unknown(nodes[j]),
-                                      moments(i, j));
-  }
-  const SparseMatrix pressure_inner = compress(disc.unknowns(), pressure_entries);
+  const SparseMatrix pressure_inner = pressure_product(prepared);
   const auto pressure = pod(gather(runs,
                                    [&](const RunRecord& run, Eigen::Index k) {
                                      Eigen::VectorXd x = Eigen::VectorXd::Zero(disc.unknowns());
-                                     x(pressures) = unknowns_at(disc, run, k)(pressures);
+                                     x(pressures) = run.snapshots.at(pressure_field).values.col(k);
                                      return x;
                                    }),
                             Eigen::SparseMatrix<double>(pressure_inner), options(plan.pressure_modes));

@@ -1,36 +1,25 @@
 #include "training/moving_domain/moving_snapshots.hpp"
 
-#include <utility>
-
 #include "fom/time/time_stepper.hpp"
-#include "rom/base/error.hpp"
+#include "training/campaign/check_record.hpp"
 #include "training/campaign/recorded_run.hpp"
 
 namespace undula::training {
 
 void check_moving_record(const Discretisation<2>& disc, const Scene& scene, const RunRecord& record,
                          const std::string& file) {
-  const auto refuse = [&](const std::string& what, const std::string& seen, const std::string& allowed) {
-    throw InputError("the run record does not fit the scene: " + what, seen, allowed, file);
-  };
   const auto steps = static_cast<std::size_t>(scene.time.steps_per_period);
   if (record.times.size() < steps)
-    refuse("snapshots", std::to_string(record.times.size()),
-           std::to_string(steps) + ": every step of a period (training.snapshots_per_period)");
+    refuse_record("snapshots", std::to_string(record.times.size()),
+                  std::to_string(steps) + ": every step of a period (training.snapshots_per_period)", file);
   const auto solids = static_cast<std::size_t>(disc.solid_unknowns());
-  const std::pair<const char*, std::size_t> fields[] = {
-      {velocity_field, velocity_unknowns(disc).size()},
-      {pressure_field, pressure_unknowns(disc).size()},
-      {displacement_field, solids},
-      {solid_velocity_field, solids},
-      {map_field, 2 * static_cast<std::size_t>(disc.vertex_nodes())}};
-  for (const auto& [name, rows] : fields) {
-    const auto found = record.snapshots.find(name);
-    if (found == record.snapshots.end()) refuse(name, "no snapshots", "snapshots of every field");
-    if (found->second.values.rows() != static_cast<Eigen::Index>(rows))
-      refuse(name, std::to_string(found->second.values.rows()) + " rows", std::to_string(rows));
-    if (!found->second.values.allFinite()) refuse(name, "nan or inf", "finite numbers");
-  }
+  check_fields(record,
+               {{velocity_field, velocity_unknowns(disc).size()},
+                {pressure_field, pressure_unknowns(disc).size()},
+                {displacement_field, solids},
+                {solid_velocity_field, solids},
+                {map_field, 2 * static_cast<std::size_t>(disc.vertex_nodes())}},
+               file);
 }
 
 Eigen::VectorXd unknowns_at(const Discretisation<2>& disc, const RunRecord& record, Eigen::Index snapshot) {

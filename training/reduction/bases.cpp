@@ -7,28 +7,12 @@
 #include "fom/scene/operating_point.hpp"
 #include "rom/base/error.hpp"
 #include "training/campaign/recorded_run.hpp"
+#include "training/reduction/inner_products.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
 
 namespace {
-
-using ColumnSparse = Eigen::SparseMatrix<double>;
-
-/// Rows and columns `unknowns` of a matrix.
-ColumnSparse submatrix(const SparseMatrix& matrix, const std::vector<int>& unknowns) {
-  std::vector<int> place(static_cast<std::size_t>(matrix.rows()), -1);
-  for (std::size_t i = 0; i < unknowns.size(); ++i)
-    place[static_cast<std::size_t>(unknowns[i])] = static_cast<int>(i);
-  Triplets entries;
-  for (const int row : unknowns)
-    for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-      if (const int column = place[static_cast<std::size_t>(entry.col())]; column >= 0)
-        entries.emplace_back(place[static_cast<std::size_t>(row)], column, entry.value());
-  ColumnSparse result(static_cast<Eigen::Index>(unknowns.size()), static_cast<Eigen::Index>(unknowns.size()));
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
-}
 
 Eigen::MatrixXd expand(const Eigen::MatrixXd& modes, const std::vector<int>& unknowns, int size) {
   Eigen::MatrixXd full = Eigen::MatrixXd::Zero(size, modes.cols());
@@ -104,20 +88,10 @@ Bases build_bases(const PreparedScene& prepared, const Scene& scene, std::span<c
   const auto velocity_rows = velocity_unknowns(disc), pressure_rows = pressure_unknowns(disc),
              solid_rows = displacement_unknowns(disc);
 
-  // The pressure's L2 product has the pattern of the parts' moments.
-  Triplets pressure_entries;
-  for (const int part : prepared.operators.own_parts) {
-    const auto moments = integrate_part(disc, part, prepared.operators.geometries[part]).moments;
-    const auto& nodes = disc.fluid_nodes.part_dofs[part];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        pressure_entries.emplace_back(disc.pressure_unknown(nodes[i]), disc.pressure_unknown(nodes[j]),
-                                      moments(i, j));
-  }
   const SparseMatrix solid_energy =
       prepared.operators.stiffness + angular_frequency * angular_frequency * prepared.operators.mass;
   const ColumnSparse velocity_inner = submatrix(prepared.operators.mass, velocity_rows);
-  const ColumnSparse pressure_inner = submatrix(compress(disc.unknowns(), pressure_entries), pressure_rows);
+  const ColumnSparse pressure_inner = submatrix(pressure_product(prepared), pressure_rows);
   const ColumnSparse displacement_inner = submatrix(solid_energy, solid_rows);
 
   const auto relative_to_holder = [&](const RunRecord& run, Eigen::MatrixXd& values) {

@@ -4,6 +4,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/units.hpp"
+#include "training/campaign/check_record.hpp"
 #include "training/campaign/recorded_run.hpp"
 #include "training/reduction/projection.hpp"
 
@@ -30,29 +31,21 @@ std::vector<RunRecord> periodic_runs(std::span<const OperatingPoint> points, con
   return runs;
 }
 
-/// Records of one campaign fit one discretisation and one plan; a file put in the place of another may not.
+/// Records of one campaign fit one discretisation and one plan.
 void check_fits(const RunRecord& run, const PreparedScene& prepared, const Scene& scene,
-                const std::filesystem::path& file) {
-  const auto refuse = [&](const std::string& what, const std::string& seen, const std::string& allowed) {
-    throw InputError("the run record does not fit the scene: " + what, seen, allowed, file.string());
-  };
+                const std::string& file) {
   const auto& disc = prepared.disc;
   const auto columns = static_cast<std::size_t>(scene.training.snapshots_per_period) *
                        static_cast<std::size_t>(scene.training.sampled_periods);
   if (run.times.size() != columns)
-    refuse("times of snapshots", std::to_string(run.times.size()), std::to_string(columns));
-  const std::pair<const char*, std::size_t> fields[] = {
-      {velocity_field, velocity_unknowns(disc).size()},
-      {pressure_field, pressure_unknowns(disc).size()},
-      {displacement_field, displacement_unknowns(disc).size()}};
-  for (const auto& [name, rows] : fields) {
-    const auto found = run.snapshots.find(name);
-    if (found == run.snapshots.end()) refuse(name, "no snapshots", "snapshots of every field");
-    if (found->second.values.rows() != static_cast<Eigen::Index>(rows))
-      refuse(name, std::to_string(found->second.values.rows()) + " rows", std::to_string(rows));
-    if (!found->second.values.allFinite()) refuse(name, "nan or inf", "finite numbers");
-  }
-  if (!run.seconds.contains("total")) refuse("wall time", "no \"total\"", "the seconds of the whole run");
+    refuse_record("times of snapshots", std::to_string(run.times.size()), std::to_string(columns), file);
+  check_fields(run,
+               {{velocity_field, velocity_unknowns(disc).size()},
+                {pressure_field, pressure_unknowns(disc).size()},
+                {displacement_field, displacement_unknowns(disc).size()}},
+               file);
+  if (!run.seconds.contains("total"))
+    refuse_record("wall time", "no \"total\"", "the seconds of the whole run", file);
 }
 
 rom::TrainingBox box_of(const TrainingPlan& plan) {
@@ -77,7 +70,7 @@ TrainedModel build_model(const Scene& scene, const SamplingPlan& plan, const Cam
                      "section [training] of the scene: a smaller box, or time.periods");
   const auto prepared = prepare_scene(scene, MPI_COMM_SELF, timer);
   for (const auto* runs : {&training, &held_out})
-    for (const auto& run : *runs) check_fits(run, *prepared, scene, store.record_file(run.point));
+    for (const auto& run : *runs) check_fits(run, *prepared, scene, store.record_file(run.point).string());
   Bases bases;
   {
     const auto scope = timer.measure("basis");

@@ -16,19 +16,6 @@ namespace {
 
 using namespace test;
 
-class Fuzz {
-public:
-  explicit Fuzz(int seed) : random_(static_cast<unsigned>(seed)) {}
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
-  }
-  int integer(int low, int high) { return low + static_cast<int>(random_() % (high - low + 1)); }
-  bool chance(double probability) { return uniform(0, 1) < probability; }
-
-private:
-  std::mt19937 random_;
-};
-
 /// The unit square, structured or with its inner points moved.
 Mesh random_background(Fuzz& fuzz) {
   const int n = fuzz.integer(3, 6);
@@ -204,20 +191,8 @@ void expect_same(const CutMesh<2>& a, const CutMesh<2>& b, double size) {
     // Skin along a facet may be seen from the other side of the facet: nothing decides but the exact cut.
     ASSERT_NEAR(cells_a[c].interface, cells_b[c].interface, 1e-12 * size) << "interface in cell " << c;
   }
-  const auto by_facet = [](const auto& cut) {
-    std::map<int, std::vector<double>> facets;
-    for (const auto& connection : cut.connections) facets[connection.facet].push_back(connection.measure);
-    for (auto& [facet, measures] : facets) std::sort(measures.begin(), measures.end());
-    return facets;
-  };
-  const auto facets_a = by_facet(a), facets_b = by_facet(b);
-  ASSERT_EQ(facets_a.size(), facets_b.size());
-  for (auto i = facets_a.begin(), j = facets_b.begin(); i != facets_a.end(); ++i, ++j) {
-    ASSERT_EQ(i->first, j->first);
-    ASSERT_EQ(i->second.size(), j->second.size()) << "connections across facet " << i->first;
-    for (std::size_t k = 0; k < i->second.size(); ++k)
-      ASSERT_NEAR(i->second[k], j->second[k], 1e-13 * size) << "facet " << i->first;
-  }
+  expect_same_facets(a, b, 1e-13 * size);
+  if (testing::Test::HasFatalFailure()) return;
   ASSERT_EQ(a.boundary.size(), b.boundary.size());
   ASSERT_EQ(build_dof_sets(a).dof_point, build_dof_sets(b).dof_point);
 }

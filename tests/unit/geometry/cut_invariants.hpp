@@ -11,6 +11,7 @@
 #include <set>
 #include <vector>
 
+#include "cut_summary.hpp"
 #include "geometry/cut/cut.hpp"
 #include "geometry/mesh/box_grid.hpp"
 
@@ -107,27 +108,6 @@ inline long double moment(const Polygon& polygon, int a, int b) {
     }
   }
   return sum;
-}
-
-/// Measures and combinatorics of a cut.
-struct CutSummary {
-  std::size_t parts = 0, cut_parts = 0, connections = 0, boundary_pieces = 0, unknowns = 0;
-  double volume = 0, interface = 0, boundary = 0;
-};
-
-inline CutSummary summary(const CutMesh<2>& cut) {
-  CutSummary s;
-  s.parts = cut.parts.size();
-  s.connections = cut.connections.size();
-  s.boundary_pieces = cut.boundary.size();
-  for (const auto& part : cut.parts) {
-    s.cut_parts += part.cut;
-    s.volume += part.measure;
-  }
-  for (const double w : cut.interface_quadrature.weights) s.interface += w;
-  for (const double w : cut.boundary_quadrature.weights) s.boundary += w;
-  s.unknowns = build_dof_sets(cut).dof_point.size();
-  return s;
 }
 
 /// Moments up to degree 3 of every element: parts + solid = element, relative to the element.

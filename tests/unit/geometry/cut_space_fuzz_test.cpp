@@ -17,14 +17,9 @@ namespace {
 
 using namespace test;
 
-class Fuzz {
+class SpaceFuzz : public Fuzz {
 public:
-  explicit Fuzz(int seed) : random_(static_cast<unsigned>(seed)) {}
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
-  }
-  int integer(int low, int high) { return low + static_cast<int>(random_() % (high - low + 1)); }
-  bool chance(double probability) { return uniform(0, 1) < probability; }
+  using Fuzz::Fuzz;
   Point<3> point(double low, double high) {
     const double x = uniform(low, high), y = uniform(low, high), z = uniform(low, high);
     return {x, y, z};
@@ -33,13 +28,10 @@ public:
     const Point<3> axis = point(-1, 1);
     return Eigen::AngleAxisd(uniform(0, 6), axis.normalized()).toRotationMatrix();
   }
-
-private:
-  std::mt19937 random_;
 };
 
 /// The unit cube, structured or with its inner points moved.
-Mesh3 random_background(Fuzz& fuzz) {
+Mesh3 random_background(SpaceFuzz& fuzz) {
   const int n = fuzz.integer(2, 4);
   auto mesh = box_mesh({{0, 0, 0}, {1, 1, 1}}, {n, n, n});
   if (fuzz.chance(0.5))
@@ -49,7 +41,7 @@ Mesh3 random_background(Fuzz& fuzz) {
 }
 
 /// Around `centre`: a cube's surface pushed to random radii, coned from the centre.
-Mesh3 star(Fuzz& fuzz, const Point<3>& centre, double size) {
+Mesh3 star(SpaceFuzz& fuzz, const Point<3>& centre, double size) {
   const int n = fuzz.integer(1, 3);
   const auto cube = box_mesh({{-1, -1, -1}, {1, 1, 1}}, {n, n, n});
   Mesh3 mesh;
@@ -73,7 +65,7 @@ Mesh3 star(Fuzz& fuzz, const Point<3>& centre, double size) {
 }
 
 /// A bent plate through `centre`, some of them but a few hundred rounding errors thick.
-Mesh3 plate(Fuzz& fuzz, const Point<3>& centre, double length) {
+Mesh3 plate(SpaceFuzz& fuzz, const Point<3>& centre, double length) {
   const double width = length * fuzz.uniform(0.3, 1);
   auto mesh = box_mesh({{-length / 2, -width / 2, -0.5}, {length / 2, width / 2, 0.5}},
                        {fuzz.integer(2, 6), fuzz.integer(1, 4), 1});
@@ -88,7 +80,7 @@ Mesh3 plate(Fuzz& fuzz, const Point<3>& centre, double length) {
 }
 
 /// Boxes and tetrahedra with coordinates on multiples of 1 / n.
-Mesh3 on_lattice(Fuzz& fuzz, int n, const Point<3>& low, const Point<3>& high) {
+Mesh3 on_lattice(SpaceFuzz& fuzz, int n, const Point<3>& low, const Point<3>& high) {
   std::array<int, 3> from, to, counts;
   for (int i = 0; i < 3; ++i) {
     const int first = static_cast<int>(std::ceil(low[i] * n)),
@@ -111,7 +103,7 @@ Mesh3 on_lattice(Fuzz& fuzz, int n, const Point<3>& low, const Point<3>& high) {
 
 /// Tetrahedra with corners on multiples of 1/4, some of which touch each other in points, along edges or
 /// facets, none of which overlap.
-Solids3 lattice_tetrahedra(Fuzz& fuzz) {
+Solids3 lattice_tetrahedra(SpaceFuzz& fuzz) {
   Solids3 solids;
   for (int trial = 0; trial < 6; ++trial) {
     Mesh3 mesh;
@@ -135,7 +127,7 @@ struct Scene {
 };
 
 Scene random_scene(int seed) {
-  Fuzz fuzz(seed);
+  SpaceFuzz fuzz(seed);
   Scene scene{random_background(fuzz), {}, 1};
   switch (seed % 6) {
     case 0:
@@ -198,20 +190,8 @@ void expect_same(const CutMesh<3>& a, const CutMesh<3>& b, double size) {
     for (std::size_t i = 0; i < measures_a[c].size(); ++i)
       ASSERT_NEAR(measures_a[c][i], measures_b[c][i], 1e-13 * std::pow(size, 3)) << "cell " << c;
   }
-  const auto by_facet = [](const auto& cut) {
-    std::map<int, std::vector<double>> facets;
-    for (const auto& connection : cut.connections) facets[connection.facet].push_back(connection.measure);
-    for (auto& [facet, areas] : facets) std::sort(areas.begin(), areas.end());
-    return facets;
-  };
-  const auto facets_a = by_facet(a), facets_b = by_facet(b);
-  ASSERT_EQ(facets_a.size(), facets_b.size());
-  for (auto i = facets_a.begin(), j = facets_b.begin(); i != facets_a.end(); ++i, ++j) {
-    ASSERT_EQ(i->first, j->first);
-    ASSERT_EQ(i->second.size(), j->second.size()) << "connections across facet " << i->first;
-    for (std::size_t k = 0; k < i->second.size(); ++k)
-      ASSERT_NEAR(i->second[k], j->second[k], 1e-13 * size * size) << "facet " << i->first;
-  }
+  expect_same_facets(a, b, 1e-13 * size * size);
+  if (testing::Test::HasFatalFailure()) return;
   double skin_a = 0, skin_b = 0;
   for (const double w : a.interface_quadrature.weights) skin_a += w;
   for (const double w : b.interface_quadrature.weights) skin_b += w;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cut_summary.hpp"
 #include "geometry/cut/cut.hpp"
 #include "geometry/mesh/box_mesh.hpp"
 
@@ -190,28 +191,6 @@ inline void expect_closed(const CutMesh<3>& cut, double tolerance) {
       volume += cut.volume_quadrature.weights[q] * (cut.volume_quadrature.points[q] - middle);
   }
   ASSERT_LE((surface - volume).norm(), tolerance * std::pow(size, 4));
-}
-
-/// Measures and combinatorics of a cut.
-struct SpaceSummary {
-  std::size_t parts = 0, cut_parts = 0, connections = 0, boundary_pieces = 0, unknowns = 0, edge_unknowns = 0;
-  double volume = 0, interface = 0, boundary = 0;
-};
-
-inline SpaceSummary summary(const CutMesh<3>& cut) {
-  SpaceSummary s;
-  s.parts = cut.parts.size();
-  s.connections = cut.connections.size();
-  s.boundary_pieces = cut.boundary.size();
-  for (const auto& part : cut.parts) {
-    s.cut_parts += part.cut;
-    s.volume += part.measure;
-  }
-  for (const double w : cut.interface_quadrature.weights) s.interface += w;
-  for (const double w : cut.boundary_quadrature.weights) s.boundary += w;
-  s.unknowns = build_dof_sets(cut).dof_point.size();
-  s.edge_unknowns = build_edge_sets(cut).edge_points.size();
-  return s;
 }
 
 } // namespace undula::geometry::test

@@ -19,12 +19,12 @@ MovingModel small_model() {
   model.pressure_modes = 1;
   model.part_weights = {0, 2.5, 0, 0, 1};
   model.cell_weights = {};
-  model.frequency_low_Hz = 100;
-  model.frequency_high_Hz = 140;
-  model.voltage_low_V = 34;
-  model.voltage_high_V = 50;
-  model.head_low_mmHg = 20;
-  model.head_high_mmHg = 75;
+  model.box.frequency_low_Hz = 100;
+  model.box.frequency_high_Hz = 140;
+  model.box.stroke_low_mm = 34;
+  model.box.stroke_high_mm = 50;
+  model.box.head_low_mmHg = 20;
+  model.box.head_high_mmHg = 75;
   MovingRun run;
   run.frequency_Hz = 120;
   run.voltage_V = 40;
@@ -61,8 +61,8 @@ TEST_F(MovingModelFile, ComesBackAsItWas) {
   EXPECT_EQ(back.pressure_modes, 1);
   EXPECT_EQ(back.part_weights, model.part_weights);
   EXPECT_EQ(back.cell_weights, model.cell_weights);
-  EXPECT_EQ(back.voltage_high_V, 50);
-  EXPECT_EQ(back.head_low_mmHg, 20);
+  EXPECT_EQ(back.box.stroke_high_mm, 50);
+  EXPECT_EQ(back.box.head_low_mmHg, 20);
   ASSERT_EQ(back.runs.size(), 2U);
   EXPECT_TRUE(back.runs[0].held_out);
   EXPECT_FALSE(back.runs[1].held_out);
@@ -83,8 +83,8 @@ TEST_F(MovingModelFile, RefusesWhatCannotBeAModel) {
   };
   refused([](MovingModel& model) { model.basis(2, 1) = std::numeric_limits<double>::quiet_NaN(); });
   refused([](MovingModel& model) { model.pressure_modes = 4; });
-  refused([](MovingModel& model) { model.head_low_mmHg = 80; });
-  refused([](MovingModel& model) { model.head_high_mmHg = std::numeric_limits<double>::infinity(); });
+  refused([](MovingModel& model) { model.box.head_low_mmHg = 80; });
+  refused([](MovingModel& model) { model.box.head_high_mmHg = std::numeric_limits<double>::infinity(); });
   refused([](MovingModel& model) { model.error_l_per_min = std::numeric_limits<double>::quiet_NaN(); });
   refused([](MovingModel& model) { model.part_weights[1] = std::numeric_limits<double>::infinity(); });
 }

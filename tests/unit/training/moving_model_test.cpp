@@ -72,7 +72,7 @@ TEST_F(MovingModel, MarchesAsTheRunItWasMadeFrom) {
 
   MovingReducedLevel level(built.model, "model", MPI_COMM_SELF, timer);
   const double head = run.head_mmHg;
-  const Scene asked = scene_of_moving_model(built.model, "model", run.frequency_Hz, run.voltage_V);
+  const Scene asked = scene_of_moving_model(built.model, "model", run.frequency_Hz, {{}, run.voltage_V});
   const auto point = level.curve(asked, std::span(&head, 1)).front();
   EXPECT_NEAR(point.stroke_mm, run.stroke_mm, 0.02 * run.stroke_mm);
   EXPECT_NEAR(point.flow_l_per_min, run.flow_l_per_min, 0.05 * std::abs(run.flow_l_per_min));
