@@ -20,7 +20,9 @@
 #include "apps/output/gnuplot.hpp"
 #include "apps/output/progress.hpp"
 #include "apps/output/text_table.hpp"
+#include "fom/levels/emulated_level.hpp"
 #include "fom/output/root_rank.hpp"
+#include "fom/output/scene_difference.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_tolerance.hpp"
@@ -35,6 +37,7 @@ namespace {
 
 struct CalibrateOptions {
   std::string scene;
+  std::string by; ///< emulator that answers for the scene; empty: the scene's own level
   std::vector<std::string> overrides;
   std::vector<std::string> data;
   DataSetting setting;
@@ -108,6 +111,53 @@ void check_output(const CalibrateOptions& options) {
   }
 }
 
+/// The emulator of --by. Throws InputError unless it was made of runs of this scene, up to what is its input,
+/// and knows the free keys.
+rom::Emulator read_answering_emulator(const std::string& file, const Scene& scene,
+                                      std::span<const FreeKey> keys) {
+  if (!rom::holds_emulator(file)) {
+    throw InputError("only an emulator answers for the values of a scene", file,
+                     "an emulator that undula train made (training.model = \"emulator\")", "--by");
+  }
+  rom::Emulator emulator = rom::load_emulator(file);
+  const auto known = emulated_keys(emulator);
+  const auto is_known = [&](const std::string& key) { return std::ranges::find(known, key) != known.end(); };
+  for (const FreeKey& key : keys) {
+    if (!is_known(key.key)) {
+      std::string allowed;
+      for (const std::string& one : known) {
+        allowed += (allowed.empty() ? "" : ", ") + one;
+      }
+      throw InputError("the emulator has no such input", key.key,
+                       allowed.empty() ? "an emulator trained with training.vary" : allowed, "--by " + file);
+    }
+  }
+  const auto of_runs = emulator.provenance.find("scene");
+  auto differences =
+      differing_keys(of_runs == emulator.provenance.end() ? "" : of_runs->second, scene_to_toml(scene));
+  std::erase_if(differences, [&](const KeyDifference& one) {
+    return is_known(one.key) || one.key == "name" || one.key == "geometry.profile" ||
+           one.key.starts_with("operating_point.") || one.key.starts_with("output.") ||
+           one.key.starts_with("training.");
+  });
+  if (!differences.empty()) {
+    throw InputError("the emulator is of runs of another scene", difference_text(differences),
+                     "the scene of its campaign, or an emulator of this one", "--by " + file);
+  }
+  return emulator;
+}
+
+/// The largest error that the emulator states of a computed flow.
+double largest_stated_error(Level& level, const Scene& scene, std::span<const TargetCurve> targets) {
+  double largest = 0;
+  for (const TargetCurve& target : targets) {
+    for (const CurvePoint& point : level.curve(at_setting(scene, target), target.head_mmHg)) {
+      largest = std::max(largest, point.error_l_per_min);
+    }
+  }
+  return largest;
+}
+
 void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
   // 1. Everything that may be wrong with the input comes before the first result.
   check_output(options);
@@ -142,6 +192,13 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
   const std::vector<TargetCurve> targets =
       target_curves(scene, options.data, measured, options.setting, options.points);
 
+  std::optional<rom::Emulator> emulator;
+  LevelOfScene level_of;
+  if (!options.by.empty()) {
+    emulator = read_answering_emulator(options.by, scene, keys);
+    level_of = [&emulator](const Scene&) { return std::make_unique<EmulatedLevel>(*emulator); };
+  }
+
   // 2. The fit: every set of values gives all curves.
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
@@ -152,11 +209,12 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
     if (rank == 0) {
       progress.emplace("calibrate (at most)", static_cast<long>(keys.size()) * (fit.most_points_per_key + 2));
     }
-    const FlowsOfValues flows = flows_of_scene(scene, keys, targets, comm, [&](const std::string& reason) {
+    const auto on_refusal = [&](const std::string& reason) {
       if (!options.json) {
         spdlog::warn("refused a set of values: {}", reason);
       }
-    });
+    };
+    const FlowsOfValues flows = flows_of_scene(scene, keys, targets, comm, on_refusal, level_of);
     long done = 0;
     calibration = calibrate(
         [&](const Eigen::VectorXd& values) {
@@ -183,7 +241,7 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
     }
     for (const ProfileRequest& request : requests) {
       const FlowsAtValue flows = [&](double value, std::span<const FreeKey> others) {
-        return flows_of_scene(with_value(scene, request.key, value), others, targets, comm, {});
+        return flows_of_scene(with_value(scene, request.key, value), others, targets, comm, {}, level_of);
       };
       profiles.push_back(
           {request.key, profile_likelihood(flows, request, keys, calibration.optimum, targets, [&] {
@@ -202,6 +260,13 @@ void run_calibration(const CalibrateOptions& options, MPI_Comm comm) {
     for (const FreeKey& key : keys) {
       narrow_tolerance(calibrated, key.key);
     }
+    if (emulator) {
+      EmulatedLevel level(*emulator);
+      spdlog::warn(
+          "the flows are the emulator's, which states errors of up to {} l/min of them; a run of the "
+          "scene confirms: undula hq {}",
+          decimals(largest_stated_error(level, calibrated, targets), 2), options.output);
+    }
     const CalibrationReport report = {calibrated, keys, targets, calibration, profiles};
     const auto folder = std::filesystem::absolute(options.output).parent_path();
     replace_text_file(options.output, calibrated_scene_text(report, folder));
@@ -219,6 +284,8 @@ void add_calibrate_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "calibrate", "Fit keys of a scene to measured head-flow curves (docs/calibration.md)");
   command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command->add_option("--by", options->by,
+                      "emulator (.h5) of this scene that answers in its place; fits its inputs");
   command
       ->add_option("--data", options->data,
                    "measured points (CSV: head_mmHg,flow_l_per_min), may be repeated")

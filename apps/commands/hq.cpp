@@ -185,14 +185,13 @@ Question read_question(const HqCommandOptions& options) {
       options.stroke_mm, voltages.empty() ? std::nullopt : std::optional(voltages.front()));
   question.scenes = {question.source.scene};
   for (std::size_t k = 1; k < voltages.size(); ++k) {
-    // An emulator's scene is no whole one: it is made again instead of changed.
-    question.scenes.push_back(
-        question.source.emulator ? scene_of_emulator(*question.source.emulator, options.file,
-                                                     *options.frequency_Hz, {}, voltages[k])
-        : question.source.moving
-            ? scene_of_moving_model(*question.source.moving, options.file, *options.frequency_Hz,
-                                    {{}, voltages[k]})
-            : with_value(question.source.scene, "operating_point.voltage_V", voltages[k]));
+    // A model's scene is no whole one, that could be checked.
+    question.scenes.push_back(question.source.scene);
+    if (question.source.is_model()) {
+      question.scenes.back().operating_point.voltage = voltages[k];
+    } else {
+      question.scenes.back() = with_value(question.source.scene, "operating_point.voltage_V", voltages[k]);
+    }
   }
   const Scene& scene = question.scenes.front();
   if (options.band && question.source.is_model()) {

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -35,6 +36,7 @@
 #include "training/moving_domain/build_moving_model.hpp"
 #include "training/reduction/build_model.hpp"
 #include "training/sampling/trainable_scene.hpp"
+#include "training/sampling/varied_keys.hpp"
 
 namespace undula::apps {
 namespace {
@@ -56,8 +58,12 @@ std::string point_text(const OperatingPoint& point) {
   const std::string drive = point.drive == Drive::voltage
                                 ? plain_number(point.voltage) + " V, "
                                 : plain_number(units::length_to_mm(point.stroke)) + " mm, ";
-  return plain_number(point.frequency) + " Hz, " + drive + plain_number(units::pressure_to_mmHg(point.head)) +
-         " mmHg";
+  std::string text = plain_number(point.frequency) + " Hz, " + drive +
+                     plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
+  for (const auto& [key, value] : point.varied) {
+    text += ", " + key + " = " + plain_number(value);
+  }
+  return text;
 }
 
 std::string mode_text(const TrainedModel& trained) {
@@ -195,19 +201,30 @@ void compute_runs(const Scene& scene, std::span<const OperatingPoint> points, co
 /// Points as numbers, for the other ranks.
 std::vector<OperatingPoint> shared(const std::vector<OperatingPoint>& on_root, const Scene& scene,
                                    MPI_Comm comm) {
+  // The keys that all points vary, or none of those at the scene's own values.
+  const auto keys = varied_keys(scene);
   std::vector<double> numbers;
   for (const OperatingPoint& at : on_root) {
     numbers.insert(numbers.end(), {at.frequency, at.stroke, at.voltage, at.head});
+    for (const VariedKey& key : keys) {
+      const auto there = at.varied.find(key.key);
+      numbers.push_back(there != at.varied.end() ? there->second : std::nan(""));
+    }
   }
   int size = static_cast<int>(numbers.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
   numbers.resize(static_cast<std::size_t>(size));
   MPI_Bcast(numbers.data(), size, MPI_DOUBLE, 0, comm);
   std::vector<OperatingPoint> points;
-  for (std::size_t k = 0; k < numbers.size(); k += 4) {
+  for (std::size_t k = 0; k < numbers.size(); k += 4 + keys.size()) {
     OperatingPoint at = scene.operating_point;
     at.frequency = numbers[k], at.stroke = numbers[k + 1], at.voltage = numbers[k + 2],
     at.head = numbers[k + 3];
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (const double value = numbers[k + 4 + i]; std::isfinite(value)) {
+        at.varied[keys[i].key] = value;
+      }
+    }
     points.push_back(at);
   }
   return points;
@@ -267,8 +284,10 @@ std::vector<OperatingPoint> recorded_besides(const Scene& scene, const CampaignS
   for (const std::string& message : damaged) {
     spdlog::warn("{}", message);
   }
+  const auto varied = varied_keys(scene);
   for (const OperatingPoint& point : recorded) {
-    if (point.drive == scene.operating_point.drive && is_inside(scene.training, point) && !planned(point)) {
+    if (point.drive == scene.operating_point.drive && is_inside(scene.training, point, varied) &&
+        !planned(point)) {
       besides.push_back(point);
     }
   }
@@ -284,6 +303,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
   const Scene scene = read_scene(options.scene, options.overrides);
   require_trainable(scene);
   check_training(scene, scene.file.string());
+  const std::vector<VariedKey> varied = varied_keys(scene);
   const std::string output = options.output.empty() ? scene.name + ".h5" : options.output;
   on_root(comm, [&] {
     check_target(output, scene, options.force);
@@ -297,7 +317,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
   }
   const bool moving = !emulated && has_mapped_domain(scene);
   SamplingPlan plan =
-      plan_samples(scene.training, emulated || moving ? scene.operating_point : OperatingPoint{});
+      plan_samples(scene.training, emulated || moving ? scene.operating_point : OperatingPoint{}, varied);
   std::optional<CampaignStore> store;
   std::vector<OperatingPoint> besides;
   on_root(comm, [&] {

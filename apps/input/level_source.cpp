@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/input/head_list.hpp"
 #include "apps/input/reduced_model.hpp"
 #include "fom/levels/emulated_level.hpp"
 #include "fom/levels/moving_reduced_level.hpp"
@@ -15,21 +16,46 @@
 #include "fom/machines/wave_pump/pump_checks.hpp"
 #include "fom/scene/common_problem.hpp"
 #include "fom/scene/scene_file.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 
 namespace undula::apps {
 namespace {
 
+/// "membrane.young_dyn_per_cm2=1.6e7", one of the keys that the emulator answers for.
+void override_input(const rom::Emulator& emulator, const std::string& text, const std::string& file,
+                    Scene& scene) {
+  const auto keys = emulated_keys(emulator);
+  const auto equals = text.find('=');
+  const std::string key = text.substr(0, equals);
+  if (std::ranges::find(keys, key) == keys.end()) {
+    std::string known;
+    for (const std::string& one : keys) {
+      known += (known.empty() ? "" : ", ") + one;
+    }
+    throw InputError("the emulator does not know this key", "--set " + text,
+                     known.empty() ? "no --set; --set with a scene (.toml)" : known, file);
+  }
+  const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+  const std::string option = "--set " + key;
+  const auto values = parse_numbers(value, {"value of the key", "", "1.6e7", option.c_str()});
+  if (values.size() != 1) {
+    throw InputError("a key has one value", "--set " + text, "key=value", file);
+  }
+  set_value(scene, key, values.front());
+}
+
 LevelSource read_model_source(const std::string& file, const std::vector<std::string>& overrides,
                               const std::optional<double>& frequency_Hz,
                               const std::optional<double>& stroke_mm,
                               const std::optional<double>& voltage_V) {
-  if (!overrides.empty()) {
+  const bool is_emulator = std::filesystem::exists(file) && rom::holds_emulator(file);
+  if (!overrides.empty() && !is_emulator) {
     throw InputError("a reduced model has no keys to override", "--set " + overrides.front(),
                      "--set with a scene (.toml)", file);
   }
-  if (std::filesystem::exists(file) && rom::holds_emulator(file)) {
+  if (is_emulator) {
     if (!frequency_Hz) {
       throw CLI::RequiredError("--frequency");
     }
@@ -37,6 +63,9 @@ LevelSource read_model_source(const std::string& file, const std::vector<std::st
     source.file = file;
     source.emulator = rom::load_emulator(file);
     source.scene = scene_of_emulator(*source.emulator, file, *frequency_Hz, stroke_mm, voltage_V);
+    for (const std::string& text : overrides) {
+      override_input(*source.emulator, text, file, source.scene);
+    }
     return source;
   }
   if (rom::holds_moving_model(file)) {

@@ -35,7 +35,8 @@ void warn_of_profile(const Scene& scene);
 
 /// Reads a scene of a pump with `--set` overrides, then `--frequency`, `--stroke` and `--voltage` (which
 /// drives the actuator of the scene) where they are given; or
-/// a reduced model or an emulator, which need frequency and drive and have no keys to override. Throws
+/// a reduced model or an emulator, which need frequency and drive; an emulator's keys to override are those
+/// that it answers for, a reduced model has none. Throws
 /// InputError (or CLI::RequiredError for a missing frequency or stroke) for anything else.
 LevelSource read_level_source(const std::string& file, std::vector<std::string> overrides,
                               const std::optional<double>& frequency_Hz,

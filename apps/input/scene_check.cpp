@@ -17,6 +17,7 @@
 #include "geometry/mesh/gmsh_import.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "training/sampling/varied_keys.hpp"
 
 namespace undula::apps {
 namespace {
@@ -108,6 +109,7 @@ SceneCheck mesh_and_cut(const Scene& scene) {
   SceneCheck check;
   if (states_training(scene)) {
     check_training(scene, scene.file.string());
+    training::varied_keys(scene);
   }
   check.steps = last_step(scene);
   check.estimated_cells = estimated_cells(scene);

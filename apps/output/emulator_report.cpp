@@ -35,17 +35,31 @@ nlohmann::ordered_json score_json(const EmulatorScore& score) {
 
 std::string emulator_text(const BuiltEmulator& built, const std::string& file) {
   const auto& emulator = built.emulator;
+  std::vector<std::string> heads = {
+      "run", "f (Hz)", emulator.driven_by_voltage ? "voltage (V)" : "stroke (mm)", "head (mmHg)"};
+  for (const auto& input : further_inputs(emulator)) {
+    heads.push_back(input.name);
+  }
+  for (const char* name :
+       {"flow (l/min)", "standard error", "emulated without it", "stated error", "run (s)"}) {
+    heads.emplace_back(name);
+  }
   std::vector<std::vector<std::string>> rows;
   for (const auto& run : emulator.runs) {
-    rows.push_back({run.held_out ? "held out" : "training", plain_number(run.point[0]),
-                    decimals(run.point[1], 3), decimals(run.point[2], 2), decimals(run.flow_l_per_min, 4),
-                    decimals(run.standard_error_l_per_min, 4), decimals(run.emulated_l_per_min, 4),
-                    decimals(run.stated_error_l_per_min, 4), decimals(run.seconds, 1)});
+    std::vector<std::string> row = {run.held_out ? "held out" : "training", plain_number(run.point[0]),
+                                    decimals(run.point[1], 3), decimals(run.point[2], 2)};
+    for (std::size_t i = rom::point_inputs; i < run.point.size(); ++i) {
+      row.push_back(plain_number(run.point[i]));
+    }
+    for (const auto& [value, digits] :
+         {std::pair(run.flow_l_per_min, 4), std::pair(run.standard_error_l_per_min, 4),
+          std::pair(run.emulated_l_per_min, 4), std::pair(run.stated_error_l_per_min, 4),
+          std::pair(run.seconds, 1)}) {
+      row.push_back(decimals(value, digits));
+    }
+    rows.push_back(std::move(row));
   }
-  std::string text =
-      text_table({"run", "f (Hz)", emulator.driven_by_voltage ? "voltage (V)" : "stroke (mm)", "head (mmHg)",
-                  "flow (l/min)", "standard error", "emulated without it", "stated error", "run (s)"},
-                 rows);
+  std::string text = text_table(heads, rows);
   text += score_text("\nleft out one by one", built.left_out, built.flow_range);
   text += score_text("held out", built.held_out, built.flow_range);
   return text + "quantities: " + std::to_string(emulator.quantities.size()) + "\nwritten: " + file + "\n";
@@ -63,15 +77,20 @@ std::string emulator_json(const BuiltEmulator& built, const std::string& file) {
     result["quantities"].push_back(quantity.name);
   }
   for (const auto& run : built.emulator.runs) {
-    result["runs"].push_back({{"held_out", run.held_out},
-                              {"frequency_Hz", run.point[0]},
-                              {built.emulator.driven_by_voltage ? "voltage_V" : "stroke_mm", run.point[1]},
-                              {"head_mmHg", run.point[2]},
-                              {"flow_l_per_min", run.flow_l_per_min},
-                              {"standard_error_l_per_min", run.standard_error_l_per_min},
-                              {"emulated_l_per_min", run.emulated_l_per_min},
-                              {"stated_error_l_per_min", run.stated_error_l_per_min},
-                              {"seconds", run.seconds}});
+    nlohmann::ordered_json row = {
+        {"held_out", run.held_out},
+        {"frequency_Hz", run.point[0]},
+        {built.emulator.driven_by_voltage ? "voltage_V" : "stroke_mm", run.point[1]},
+        {"head_mmHg", run.point[2]}};
+    for (std::size_t i = rom::point_inputs; i < run.point.size(); ++i) {
+      row[built.emulator.inputs[i].name] = run.point[i];
+    }
+    row.update({{"flow_l_per_min", run.flow_l_per_min},
+                {"standard_error_l_per_min", run.standard_error_l_per_min},
+                {"emulated_l_per_min", run.emulated_l_per_min},
+                {"stated_error_l_per_min", run.stated_error_l_per_min},
+                {"seconds", run.seconds}});
+    result["runs"].push_back(std::move(row));
   }
   return result.dump(2) + "\n";
 }

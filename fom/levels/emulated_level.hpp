@@ -27,13 +27,23 @@ private:
   rom::Emulator emulator_;
 };
 
-/// Frequency, drive and head of an operating point, as emulators take them; the stroke is the nominal one.
-rom::EmulatorPoint emulator_point(const OperatingPoint& at);
+/// An emulator of a pump that a voltage drives knows other forces per volt too: they scale the voltage.
+inline constexpr const char* force_key = "actuator.force_N_per_V";
 
-/// What an emulator says of the scene it stands for: operating point, drive and box alone. The head is the
-/// middle of the box. Throws InputError for a missing drive, one of the wrong kind, or numbers that are no
-/// operating point.
+/// The inputs of an emulator at an operating point: frequency, drive, head; the stroke is the nominal one.
+/// Then the further ones: varied keys of the point, the others as stated.
+rom::EmulatorPoint emulator_point(const rom::Emulator& emulator, const OperatingPoint& at);
+
+/// The same with the further inputs that a scene states, and the voltage at the force per volt of the runs.
+rom::EmulatorPoint emulator_point(const rom::Emulator& emulator, const Scene& scene);
+
+/// What an emulator says of the scene it stands for: operating point, drive, box, force per volt and further
+/// inputs alone. The head is the middle of the box. Throws InputError for a missing drive, one of the wrong
+/// kind, or numbers that are no operating point.
 Scene scene_of_emulator(const rom::Emulator& emulator, const std::string& file, double frequency_Hz,
                         const std::optional<double>& stroke_mm, const std::optional<double>& voltage_V);
+
+/// The keys of a scene that the emulator answers for.
+std::vector<std::string> emulated_keys(const rom::Emulator& emulator);
 
 } // namespace undula::fom

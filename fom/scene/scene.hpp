@@ -55,6 +55,8 @@ struct OperatingPoint {
   double stroke_scale = 1; ///< the holder moves by stroke_scale * stroke
   Drive drive = Drive::stroke;
   double voltage = 0; ///< V, amplitude at the actuator
+  /// Values of other keys of the scene, in their units, where a campaign varies them.
+  std::map<std::string, double> varied{};
 };
 
 struct MeshSizes {
@@ -127,6 +129,7 @@ struct TrainingPlan {
   double stroke_low = 0, stroke_high = 0;       ///< cm
   double voltage_low = 0, voltage_high = 0;     ///< V, in place of the stroke where a voltage drives
   double head_low = 0, head_high = 0;           ///< dyn/cm^2
+  std::vector<std::string> vary;                ///< "section.key=low:high": other keys with a range
   int training_points = 0;                      ///< space-filling, besides the corners of the box
   int held_out_points = 0;
   int snapshots_per_period = 0;

@@ -545,6 +545,10 @@ std::vector<SceneKey> training_keys() {
             from_to(-1e4, 1e4), 0),
       bound("training.head_high_mmHg", "mmHg", "highest head of the box", FIELD(training.head_high), mmHg,
             from_to(-1e4, 1e4), 70),
+      {"training.vary", "",
+       "emulators: other keys that are inputs, each with its range, "
+       "[\"membrane.young_dyn_per_cm2=1.5e7:1.9e7\"]",
+       leaves_state, NameListKey{FIELD(training.vary)}},
       count("training.training_points", "space-filling points, besides the corners of the box",
             FIELD(training.training_points), 0, 16),
       count("training.held_out_points", "points kept out of the basis to measure its error",

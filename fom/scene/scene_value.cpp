@@ -63,15 +63,19 @@ double surface_value(const Scene& scene, std::string_view key) {
   return to_surface_unit(real.field(copy), real.cgs_per_unit);
 }
 
-Scene with_value(const Scene& scene, std::string_view key, double surface_value) {
+void set_value(Scene& scene, std::string_view key, double surface_value) {
   const SceneKey& found = real_key(scene, key);
   const auto& real = std::get<RealKey>(found.value);
   if (!real.allowed.contains(surface_value)) { // refuses nan as well
     throw InputError("key \"" + found.path + "\" is out of range", shortest_number(surface_value),
                      allowed_text(found), name_of(scene));
   }
+  real.field(scene) = surface_value * real.cgs_per_unit;
+}
+
+Scene with_value(const Scene& scene, std::string_view key, double surface_value) {
   Scene changed = scene;
-  real.field(changed) = surface_value * real.cgs_per_unit;
+  set_value(changed, key, surface_value);
   check_consistency(changed, name_of(scene));
   return changed;
 }

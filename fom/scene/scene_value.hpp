@@ -16,6 +16,10 @@ double surface_value(const Scene& scene, std::string_view key);
 /// contradicts itself (check_consistency).
 Scene with_value(const Scene& scene, std::string_view key, double surface_value);
 
+/// Sets the key as with_value does, in a scene that need not be a whole one: what contradicts itself is not
+/// refused.
+void set_value(Scene& scene, std::string_view key, double surface_value);
+
 /// The number, the shortest in decimals, that times cgs_per_unit gives exactly `stored`, as the parser
 /// multiplies; where none exists, the nearest.
 double to_surface_unit(double stored, double cgs_per_unit);

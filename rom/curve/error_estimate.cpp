@@ -84,19 +84,22 @@ double FlowIndicator::operator()(double stroke_cm, double head, const PeriodicSt
   return std::numeric_limits<double>::infinity();
 }
 
+double parts_outside(double value, double low, double high) {
+  // A bound that went through text or unit conversion still counts as inside.
+  const double slack = 1e-9 * std::max(std::abs(low), std::abs(high));
+  const double off = std::max({low - value, value - high, 0.0});
+  if (off <= slack) return 0;
+  return high > low ? off / (high - low) : std::numeric_limits<double>::infinity();
+}
+
 double growth_outside_box(const TrainingBox& box, double frequency_Hz, double stroke_mm, double head_mmHg) {
-  double squared = 0;
-  const auto add = [&](double value, double low, double high) {
-    // A bound that went through text or unit conversion still counts as inside.
-    const double slack = 1e-9 * std::max(std::abs(low), std::abs(high));
-    const double off = std::max({low - value, value - high, 0.0});
-    if (off <= slack) return;
-    squared += high > low ? std::pow(off / (high - low), 2) : std::numeric_limits<double>::infinity();
-  };
-  add(frequency_Hz, box.frequency_low_Hz, box.frequency_high_Hz);
-  add(stroke_mm, box.stroke_low_mm, box.stroke_high_mm);
-  add(head_mmHg, box.head_low_mmHg, box.head_high_mmHg);
-  const double d = std::sqrt(squared);
+  // Of two at a time: of three, infinities come out as nan with some libraries.
+  const double drive = std::hypot(parts_outside(frequency_Hz, box.frequency_low_Hz, box.frequency_high_Hz),
+                                  parts_outside(stroke_mm, box.stroke_low_mm, box.stroke_high_mm));
+  return growth_outside(std::hypot(drive, parts_outside(head_mmHg, box.head_low_mmHg, box.head_high_mmHg)));
+}
+
+double growth_outside(double d) {
   constexpr double known = 0.5, rise = 10;
   return d > known ? std::numeric_limits<double>::infinity() : std::pow(1 + rise * d, 2);
 }

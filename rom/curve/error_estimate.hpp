@@ -34,6 +34,13 @@ private:
 /// worth less the farther the point is from every run that it was calibrated on.
 double growth_outside_box(const TrainingBox& box, double frequency_Hz, double stroke_mm, double head_mmHg);
 
+/// The same of the distance d.
+double growth_outside(double d);
+
+/// How far a value is outside of a range, in parts of its width: 0 inside, infinity outside of a range
+/// without width.
+double parts_outside(double value, double low, double high);
+
 /// The estimate |error| <= safety * indicator + floor, and how well it does on points it was not fitted to.
 struct ErrorCalibration {
   double safety = 0;

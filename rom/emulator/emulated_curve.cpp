@@ -1,11 +1,13 @@
 #include "rom/emulator/emulated_curve.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
+#include "rom/curve/error_estimate.hpp"
 #include "rom/curve/hq_curve.hpp"
 #include "rom/emulator/emulated_quantities.hpp"
 
@@ -46,12 +48,16 @@ CurvePoint point_of(const Emulator& emulator, const EmulatorPoint& at) {
 
 std::vector<CurvePoint> emulated_curve(const Emulator& emulator, double frequency_Hz, double drive,
                                        std::span<const double> heads_mmHg,
-                                       const std::function<void()>& on_point) {
+                                       const std::function<void()>& on_point,
+                                       std::span<const double> further) {
   check_point(emulator, frequency_Hz, drive, heads_mmHg);
   std::vector<CurvePoint> points;
+  EmulatorPoint at{frequency_Hz, drive, 0};
+  at.insert(at.end(), further.begin(), further.end());
   for (const double head : heads_mmHg) {
     const auto begin = std::chrono::steady_clock::now();
-    points.push_back(point_of(emulator, {frequency_Hz, drive, head}));
+    at[2] = head;
+    points.push_back(point_of(emulator, at));
     points.back().seconds["total"] =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (on_point) on_point();
@@ -60,10 +66,18 @@ std::vector<CurvePoint> emulated_curve(const Emulator& emulator, double frequenc
 }
 
 std::vector<std::string> outside_training_box(const Emulator& emulator, double frequency_Hz, double drive,
-                                              std::span<const double> heads_mmHg) {
+                                              std::span<const double> heads_mmHg,
+                                              std::span<const double> further) {
   const auto& input = emulator.inputs[1];
-  return outside_training_box(training_box(emulator), frequency_Hz, drive, heads_mmHg,
-                              {input.name.c_str(), input.unit.c_str()});
+  auto lines = outside_training_box(training_box(emulator), frequency_Hz, drive, heads_mmHg,
+                                    {input.name.c_str(), input.unit.c_str()});
+  const auto others = further_inputs(emulator);
+  for (std::size_t i = 0; i < std::min(further.size(), others.size()); ++i)
+    if (parts_outside(further[i], others[i].low, others[i].high) > 0)
+      lines.push_back(others[i].name + " " + plain_number(further[i]) + " " + others[i].unit +
+                      " is outside the trained " + plain_number(others[i].low) + " to " +
+                      plain_number(others[i].high) + " " + others[i].unit);
+  return lines;
 }
 
 } // namespace undula::rom

@@ -6,24 +6,42 @@
 
 namespace undula::rom {
 
+namespace {
+
+double value_of(const Emulator& emulator, const EmulatorPoint& point, std::size_t input) {
+  return input < point.size() ? point[input] : emulator.inputs[input].stated;
+}
+
+} // namespace
+
 Eigen::VectorXd scaled_point(const Emulator& emulator, const EmulatorPoint& point) {
-  Eigen::VectorXd scaled(emulator_inputs);
+  Eigen::VectorXd scaled(static_cast<Eigen::Index>(emulator.inputs.size()));
   Eigen::Index count = 0;
-  for (std::size_t i = 0; i < point.size(); ++i) {
+  for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
     const auto& input = emulator.inputs[i];
-    if (input.high > input.low) scaled[count++] = (point[i] - input.low) / (input.high - input.low);
+    if (input.high > input.low)
+      scaled[count++] = (value_of(emulator, point, i) - input.low) / (input.high - input.low);
   }
   return scaled.head(count);
 }
 
 TrainingBox training_box(const Emulator& emulator) {
-  const auto& [frequency, drive, head] = emulator.inputs;
+  const auto &frequency = emulator.inputs[0], &drive = emulator.inputs[1], &head = emulator.inputs[2];
   return {frequency.low, frequency.high, drive.low, drive.high, head.low, head.high};
+}
+
+std::span<const EmulatorInput> further_inputs(const Emulator& emulator) {
+  return std::span(emulator.inputs).subspan(point_inputs);
 }
 
 EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point) {
   const Eigen::VectorXd x = scaled_point(emulator, point);
-  const double growth = growth_outside_box(training_box(emulator), point[0], point[1], point[2]);
+  double off = 0;
+  for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
+    const auto& input = emulator.inputs[i];
+    off = std::hypot(off, parts_outside(value_of(emulator, point, i), input.low, input.high));
+  }
+  const double growth = growth_outside(off);
   EmulatedPoint result;
   result.inside_training_box = growth == 1;
   for (const auto& quantity : emulator.quantities) {

@@ -2,8 +2,8 @@
 // another level: answers in microseconds, each with an error.
 #pragma once
 
-#include <array>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,15 +12,17 @@
 
 namespace undula::rom {
 
-/// A range of an operating point's number, surface units. A range without width is a fixed value.
+/// A range of a number that was varied, surface units. A range without width is a fixed value.
 struct EmulatorInput {
-  std::string name, unit;
+  std::string name, unit; ///< of further inputs: the key of the scene and its unit
   double low = 0, high = 0;
+  double stated = 0; ///< of further inputs: the scene's own value, taken where none is asked for
 };
 
-/// Frequency, drive, head, in this order.
-inline constexpr int emulator_inputs = 3;
-using EmulatorPoint = std::array<double, emulator_inputs>;
+/// The inputs of an operating point: frequency, drive, head, in this order. Further ones come after them.
+inline constexpr std::size_t point_inputs = 3;
+/// A value per input; without the further ones, they are as stated.
+using EmulatorPoint = std::vector<double>;
 
 struct EmulatedQuantity {
   std::string name, unit;
@@ -31,7 +33,7 @@ struct EmulatedQuantity {
 
 /// One run that the emulator knows, and what it says of it when it does not.
 struct EmulatorRun {
-  EmulatorPoint point{};
+  EmulatorPoint point;
   double flow_l_per_min = 0, standard_error_l_per_min = 0;   ///< 0: periodic
   bool held_out = false;                                     ///< in no process
   double emulated_l_per_min = 0, stated_error_l_per_min = 0; ///< left out
@@ -40,7 +42,8 @@ struct EmulatorRun {
 
 struct Emulator {
   bool driven_by_voltage = false; ///< the drive is an amplitude in V, else a stroke in mm
-  std::array<EmulatorInput, emulator_inputs> inputs;
+  double force_N_per_V = 0;       ///< of the actuator that a voltage drives; 0: not known
+  std::vector<EmulatorInput> inputs;
   std::vector<EmulatedQuantity> quantities; ///< the mean outflow, l/min, first
   std::vector<EmulatorRun> runs;
   std::map<std::string, std::string> provenance; ///< as of Model
@@ -56,10 +59,13 @@ struct EmulatedPoint {
   bool inside_training_box = false;
 };
 
-/// The box of its inputs; the drive, mm or V, in the place of the stroke.
+/// The box of its operating points; the drive, mm or V, in the place of the stroke.
 TrainingBox training_box(const Emulator& emulator);
 
-/// What the emulator says of one operating point. Outside of the box errors grow as growth_outside_box.
+/// The inputs beside those of an operating point.
+std::span<const EmulatorInput> further_inputs(const Emulator& emulator);
+
+/// What the emulator says of one point. Outside of the box errors grow as growth_outside.
 EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point);
 
 /// The coordinates of a point in an emulator's processes.

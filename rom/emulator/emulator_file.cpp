@@ -11,7 +11,9 @@ namespace undula::rom {
 namespace {
 
 constexpr const char* file_kind = "undula emulator";
-constexpr int file_version = 1;
+constexpr int file_version = 2;
+constexpr int version_of_three_inputs = 1; // frequency, drive and head alone; no force
+constexpr int most_inputs = 100;
 constexpr int most_quantities = 1000;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -81,14 +83,14 @@ EmulatedQuantity read_quantity(const Hdf5File& file, const std::string& group) {
           std::move(process), factor};
 }
 
-void write_runs(Hdf5File& file, const std::vector<EmulatorRun>& runs) {
+void write_runs(Hdf5File& file, const std::vector<EmulatorRun>& runs, std::size_t inputs) {
   std::vector<double> points, values(runs.size());
   std::vector<int> held_out;
   for (const auto& run : runs) {
     points.insert(points.end(), run.point.begin(), run.point.end());
     held_out.push_back(run.held_out ? 1 : 0);
   }
-  file.write("runs/points", points, {runs.size(), emulator_inputs});
+  file.write("runs/points", points, {runs.size(), inputs});
   for (const auto& column : run_columns) {
     for (std::size_t i = 0; i < runs.size(); ++i) values[i] = runs[i].*column.value;
     file.write(std::string("runs/") + column.name, values, {runs.size()}, column.unit);
@@ -96,12 +98,13 @@ void write_runs(Hdf5File& file, const std::vector<EmulatorRun>& runs) {
   file.write("runs/held_out", held_out);
 }
 
-std::vector<EmulatorRun> read_runs(const Hdf5File& file) {
+std::vector<EmulatorRun> read_runs(const Hdf5File& file, std::size_t inputs) {
   const auto held_out = file.read<int>("runs/held_out");
   std::vector<EmulatorRun> runs(held_out.size());
-  const auto points = file.read<double>("runs/points", {runs.size(), emulator_inputs});
+  const auto points = file.read<double>("runs/points", {runs.size(), inputs});
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (std::size_t k = 0; k < emulator_inputs; ++k) runs[i].point[k] = points[i * emulator_inputs + k];
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(i * inputs);
+    runs[i].point.assign(first, first + static_cast<std::ptrdiff_t>(inputs));
     runs[i].held_out = held_out[i] != 0;
   }
   for (const auto& column : run_columns) {
@@ -114,6 +117,11 @@ std::vector<EmulatorRun> read_runs(const Hdf5File& file) {
 /// What the processes do not check themselves.
 void check_meaning(const Emulator& emulator, const std::string& file) {
   Eigen::Index widths = 0;
+  if (emulator.inputs.size() < point_inputs)
+    refuse("inputs", std::to_string(emulator.inputs.size()), "frequency, drive, head, and others", file);
+  for (const auto& run : emulator.runs)
+    if (run.point.size() != emulator.inputs.size())
+      refuse("point of a run", std::to_string(run.point.size()) + " numbers", "one per input", file);
   for (const auto& input : emulator.inputs) {
     if (!std::isfinite(input.low) || !std::isfinite(input.high) || input.low > input.high)
       refuse("range of " + input.name, std::to_string(input.low) + " to " + std::to_string(input.high),
@@ -137,17 +145,21 @@ void save_emulator(const Emulator& emulator, const std::string& name) {
   file.write_attribute("/", "kind", file_kind);
   file.write_attribute("/", "format_version", file_version);
   file.write_attribute("/", "driven_by_voltage", emulator.driven_by_voltage ? 1 : 0);
+  file.write_attribute("/", "force_N_per_V", emulator.force_N_per_V);
+  file.create_group("inputs");
+  file.write_attribute("inputs", "count", static_cast<int>(emulator.inputs.size()));
   for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
     const auto& input = emulator.inputs[i];
     const std::string range = "inputs/" + std::to_string(i);
     file.write(range, std::vector<double>{input.low, input.high}, {2}, input.unit);
     file.write_attribute(range, "name", input.name);
+    file.write_attribute(range, "stated", input.stated);
   }
   file.create_group("quantities");
   file.write_attribute("quantities", "count", static_cast<int>(emulator.quantities.size()));
   for (std::size_t q = 0; q < emulator.quantities.size(); ++q)
     write_quantity(file, group_of(q), emulator.quantities[q]);
-  write_runs(file, emulator.runs);
+  write_runs(file, emulator.runs, emulator.inputs.size());
   write_provenance(file, emulator.provenance);
   file.commit();
 }
@@ -157,23 +169,29 @@ bool holds_emulator(const std::string& name) { return kind_of(Hdf5File::open_unc
 Emulator load_emulator(const std::string& name) {
   const auto file = Hdf5File::open_sealed(name);
   check_kind(file, file_kind, "not an emulator");
-  if (const int version = file.read_attribute<int>("/", "format_version"); version != file_version)
+  const int version = file.read_attribute<int>("/", "format_version");
+  if (version != file_version && version != version_of_three_inputs)
     throw InputError("emulator file of another format version", std::to_string(version),
-                     std::to_string(file_version), name);
+                     std::to_string(version_of_three_inputs) + " or " + std::to_string(file_version), name);
+  const bool further = version != version_of_three_inputs;
   Emulator emulator;
   emulator.driven_by_voltage = file.read_attribute<int>("/", "driven_by_voltage") != 0;
-  for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
+  if (further) emulator.force_N_per_V = file.read_attribute<double>("/", "force_N_per_V");
+  const int inputs = further ? file.read_attribute<int>("inputs", "count") : static_cast<int>(point_inputs);
+  if (inputs < 0 || inputs > most_inputs)
+    refuse("inputs", std::to_string(inputs), "at most " + std::to_string(most_inputs), name);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(inputs); ++i) {
     const std::string range = "inputs/" + std::to_string(i);
     const auto bounds = file.read<double>(range, {2});
-    emulator.inputs[i] = {file.read_attribute<std::string>(range, "name"), file.unit(range), bounds[0],
-                          bounds[1]};
+    emulator.inputs.push_back({file.read_attribute<std::string>(range, "name"), file.unit(range), bounds[0],
+                               bounds[1], further ? file.read_attribute<double>(range, "stated") : 0});
   }
   const int count = file.read_attribute<int>("quantities", "count");
   if (count < 1 || count > most_quantities)
     refuse("quantities", std::to_string(count), "1 to " + std::to_string(most_quantities), name);
   for (std::size_t q = 0; q < static_cast<std::size_t>(count); ++q)
     emulator.quantities.push_back(read_quantity(file, group_of(q)));
-  emulator.runs = read_runs(file);
+  emulator.runs = read_runs(file, emulator.inputs.size());
   emulator.provenance = read_provenance(file);
   check_meaning(emulator, name);
   return emulator;

@@ -120,14 +120,14 @@ std::vector<FreeKey> held_keys(const Scene& scene, std::span<const FreeKey> besi
 
 FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
                              std::span<const TargetCurve> targets, MPI_Comm comm,
-                             std::function<void(const std::string&)> on_failure) {
-  return [scene, keys, targets, comm, on_failure = std::move(on_failure)](
-             const Eigen::VectorXd& values) -> std::optional<Eigen::VectorXd> {
+                             std::function<void(const std::string&)> on_failure, LevelOfScene level_of) {
+  return [scene, keys, targets, comm, on_failure = std::move(on_failure),
+          level_of = std::move(level_of)](const Eigen::VectorXd& values) -> std::optional<Eigen::VectorXd> {
     std::string reason;
     try {
       const Scene changed = with_values(scene, keys, values);
       PhaseTimer timer;
-      const auto level = prepare_level(changed, comm, timer);
+      const auto level = level_of ? level_of(changed) : prepare_level(changed, comm, timer);
       std::vector<double> all;
       for (const TargetCurve& target : targets) {
         const SceneFlows flows = scene_flows(*level, at_setting(changed, target), target.head_mmHg, comm);

@@ -5,11 +5,13 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "fom/levels/level.hpp"
 #include "fom/scene/scene.hpp"
 #include "training/calibration/bounded_fit.hpp"
 #include "training/calibration/identifiability.hpp"
@@ -82,12 +84,15 @@ Scene with_values(const Scene& scene, std::span<const FreeKey> keys, const Eigen
 /// Values of the free keys in the scene, in their units.
 Eigen::VectorXd values_of(const Scene& scene, std::span<const FreeKey> keys);
 
+/// Who answers for a scene; null: its own level (prepare_level).
+using LevelOfScene = std::function<std::unique_ptr<Level>(const Scene&)>;
+
 /// The flows of a scene at the frequency, stroke and heads of every target. The level is prepared once per
 /// set of values. `on_failure` hears the reason where nothing is returned. `keys` and `targets` have to
 /// outlive the function. Collective over `comm`.
 FlowsOfValues flows_of_scene(const Scene& scene, std::span<const FreeKey> keys,
                              std::span<const TargetCurve> targets, MPI_Comm comm,
-                             std::function<void(const std::string&)> on_failure);
+                             std::function<void(const std::string&)> on_failure, LevelOfScene level_of = {});
 
 /// The scene at the frequency and drive of a target.
 Scene at_setting(const Scene& scene, const TargetCurve& target);

@@ -28,7 +28,9 @@ std::string difference(const std::string& before, const std::string& now) {
 std::string record_name(const OperatingPoint& point) {
   const std::string drive =
       point.drive == Drive::voltage ? exact_number(point.voltage) + "V_" : exact_number(point.stroke) + "cm_";
-  return exact_number(point.frequency) + "Hz_" + drive + exact_number(point.head) + "dyn_per_cm2";
+  std::string name = exact_number(point.frequency) + "Hz_" + drive + exact_number(point.head) + "dyn_per_cm2";
+  for (const auto& [key, value] : point.varied) name += "_" + key + "=" + exact_number(value);
+  return name;
 }
 
 } // namespace

@@ -38,14 +38,21 @@ OperatingPoint read_point(const Hdf5File& file) {
     point.drive = Drive::voltage;
     point.voltage = get("point/voltage");
   }
+  if (file.exists("point/varied"))
+    for (const auto& key : file.children("point/varied")) {
+      const auto dataset = "point/varied/" + key;
+      point.varied[key] = file.read<double>(dataset, {}).front();
+    }
   return point;
 }
 
 std::string point_text(const OperatingPoint& point) {
-  return exact_number(point.frequency) + " Hz, " +
-         (point.drive == Drive::voltage ? exact_number(point.voltage) + " V, "
-                                        : exact_number(point.stroke) + " cm, ") +
-         exact_number(point.head) + " dyn/cm^2";
+  std::string text = exact_number(point.frequency) + " Hz, " +
+                     (point.drive == Drive::voltage ? exact_number(point.voltage) + " V, "
+                                                    : exact_number(point.stroke) + " cm, ") +
+                     exact_number(point.head) + " dyn/cm^2";
+  for (const auto& [key, value] : point.varied) text += ", " + key + " = " + exact_number(value);
+  return text;
 }
 
 Hdf5File open_of_campaign(const std::filesystem::path& path, const std::string& campaign_hash) {
@@ -111,7 +118,7 @@ OperatingPoint point_of_record(const std::filesystem::path& path, const std::str
 
 bool same_point(const OperatingPoint& a, const OperatingPoint& b) {
   return a.frequency == b.frequency && a.head == b.head && a.drive == b.drive &&
-         (a.drive == Drive::voltage ? a.voltage == b.voltage : a.stroke == b.stroke);
+         (a.drive == Drive::voltage ? a.voltage == b.voltage : a.stroke == b.stroke) && a.varied == b.varied;
 }
 
 void write_run_record(const RunRecord& record, const std::string& campaign_hash,
@@ -129,6 +136,9 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
   put("point/stroke", record.point.stroke, "cm");
   put("point/head", record.point.head, "dyn/cm^2");
   if (record.point.drive == Drive::voltage) put("point/voltage", record.point.voltage, "V");
+  if (!record.point.varied.empty()) file.create_group("point/varied");
+  for (const auto& [key, value] : record.point.varied)
+    file.write("point/varied/" + key, std::span(&value, 1), {});
   file.write("times", std::span(record.times), {record.times.size()}, "s");
   // A column-major [unknown][snapshot] matrix is a row-major [snapshot][unknown] array.
   file.create_group("snapshots");

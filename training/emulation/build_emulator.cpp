@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fom/levels/emulated_level.hpp"
+#include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
@@ -29,7 +30,8 @@ std::string point_text(const rom::Emulator& emulator, const rom::EmulatorPoint& 
 }
 
 /// Nothing for runs that say no mean flow; `why` then tells.
-std::optional<KnownRun> known_run(const Scene& scene, const RunRecord& record, std::string& why) {
+std::optional<KnownRun> known_run(const rom::Emulator& emulator, const Scene& scene, const RunRecord& record,
+                                  std::string& why) {
   KnownRun known;
   known.point = curve_point_of(scene, record);
   if (record.state == RunState::failed || !std::isfinite(known.point.flow_l_per_min)) {
@@ -40,7 +42,7 @@ std::optional<KnownRun> known_run(const Scene& scene, const RunRecord& record, s
     why = "it does not repeat, and too few periods tell its mean";
     return std::nullopt;
   }
-  known.run.point = emulator_point(record.point);
+  known.run.point = emulator_point(emulator, record.point);
   known.run.flow_l_per_min = known.point.flow_l_per_min;
   known.run.standard_error_l_per_min = known.point.periodic ? 0 : known.point.standard_error_l_per_min;
   if (const auto total = record.seconds.find("total"); total != record.seconds.end())
@@ -67,14 +69,18 @@ EmulatorScore score_of(const std::vector<rom::EmulatorRun>& runs, bool held_out)
   return score;
 }
 
-std::array<rom::EmulatorInput, rom::emulator_inputs> inputs_of(const Scene& scene) {
+std::vector<rom::EmulatorInput> inputs_of(const Scene& scene) {
   const auto& box = scene.training;
   const bool by_voltage = scene.operating_point.drive == Drive::voltage;
-  return {{{"frequency", "Hz", box.frequency_low, box.frequency_high},
-           by_voltage ? rom::EmulatorInput{"voltage", "V", box.voltage_low, box.voltage_high}
-                      : rom::EmulatorInput{"stroke", "mm", units::length_to_mm(box.stroke_low),
-                                           units::length_to_mm(box.stroke_high)},
-           {"head", "mmHg", units::pressure_to_mmHg(box.head_low), units::pressure_to_mmHg(box.head_high)}}};
+  std::vector<rom::EmulatorInput> inputs = {
+      {"frequency", "Hz", box.frequency_low, box.frequency_high},
+      by_voltage ? rom::EmulatorInput{"voltage", "V", box.voltage_low, box.voltage_high}
+                 : rom::EmulatorInput{"stroke", "mm", units::length_to_mm(box.stroke_low),
+                                      units::length_to_mm(box.stroke_high)},
+      {"head", "mmHg", units::pressure_to_mmHg(box.head_low), units::pressure_to_mmHg(box.head_high)}};
+  for (const auto& key : varied_keys(scene))
+    inputs.push_back({key.key, key.unit, key.low, key.high, key.stated});
+  return inputs;
 }
 
 } // namespace
@@ -84,17 +90,20 @@ BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const
   BuiltEmulator built;
   auto& emulator = built.emulator;
   emulator.driven_by_voltage = scene.operating_point.drive == Drive::voltage;
+  // Where the coil's resistance is stated, the force per volt changes the damping too.
+  if (emulator.driven_by_voltage && scene.actuator.coil_resistance == 0)
+    emulator.force_N_per_V = surface_value(scene, force_key);
   emulator.inputs = inputs_of(scene);
   std::vector<KnownRun> training, held_out;
   const auto collect = [&](const std::vector<OperatingPoint>& points, bool held) {
     for (const auto& at : points) {
       std::string why;
-      auto known = known_run(scene, store.load(at), why);
+      auto known = known_run(emulator, scene, store.load(at), why);
       if (known) {
         known->run.held_out = held;
         (held ? held_out : training).push_back(std::move(*known));
       } else {
-        built.not_used.push_back(point_text(emulator, emulator_point(at)) + ": " + why);
+        built.not_used.push_back(point_text(emulator, emulator_point(emulator, at)) + ": " + why);
       }
     }
   };

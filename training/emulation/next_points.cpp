@@ -25,7 +25,7 @@ rom::GaussianProcess believing(const rom::GaussianProcess& process, const Eigen:
 NextPoints next_points(const rom::Emulator& emulator, const Scene& scene,
                        std::span<const OperatingPoint> asked, int count) {
   NextPoints next;
-  auto candidates = candidate_points(scene.training, scene.operating_point);
+  auto candidates = candidate_points(scene.training, scene.operating_point, varied_keys(scene));
   std::erase_if(candidates, [&](const OperatingPoint& at) {
     return std::ranges::any_of(asked, [&](const OperatingPoint& other) { return same_point(at, other); });
   });
@@ -35,7 +35,7 @@ NextPoints next_points(const rom::Emulator& emulator, const Scene& scene,
     const OperatingPoint* worst = nullptr;
     double largest = 0;
     for (const auto& at : candidates) {
-      const double error = rom::emulate(now, emulator_point(at)).values.front().error;
+      const double error = rom::emulate(now, emulator_point(emulator, at)).values.front().error;
       if (error <= largest || std::ranges::any_of(next.points, [&](const OperatingPoint& other) {
             return same_point(at, other);
           }))
@@ -47,7 +47,7 @@ NextPoints next_points(const rom::Emulator& emulator, const Scene& scene,
     if (k == 0) next.largest_error = largest;
     next.points.push_back(*worst);
     auto& flow = now.quantities.front();
-    flow.process = believing(flow.process, scaled_point(now, emulator_point(*worst)));
+    flow.process = believing(flow.process, scaled_point(now, emulator_point(emulator, *worst)));
   }
   return next;
 }

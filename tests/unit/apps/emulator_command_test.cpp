@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/apps.hpp"
@@ -161,7 +162,7 @@ TEST_F(EmulatorCommands, OutsideOfItsBoxItSaysSoAndWrongQuestionsAreRefused) {
   expect_refused({"hq", "pump.h5", "--voltage", "40", "--head", "40"}, "--frequency");
   expect_refused(
       {"hq", "pump.h5", "--frequency", "120", "--voltage", "40", "--set", "mesh.growth=1", "--head", "40"},
-      "no keys to override");
+      "does not know this key");
   expect_refused(train_words({"--set", "training.voltage_low_V=60"}), "voltage");
   // Another scene does not take the place of this emulator, and has runs of its own.
   expect_refused(train_words({"--set", "membrane.poisson=0.48", "--campaign", "other"}), "another scene");
@@ -196,6 +197,106 @@ TEST_F(EmulatorCommands, RunsAreAddedWhereItKnowsLeastAndEarlierOnesKept) {
   EXPECT_EQ(larger["runs"].size(), 18u);
   EXPECT_EQ(count(), before + 4);
   EXPECT_EQ(larger["held_out"]["runs"], 0);
+}
+
+/// Of two heads, the modulus, and the force per volt, which scales the voltage.
+class FurtherInputs : public testing::Test {
+protected:
+  static void SetUpTestSuite() {
+    folder = new ScratchFolder;
+    Words words =
+        train_words({"--json", "--set", R"(training.vary=["membrane.young_dyn_per_cm2=1.5e7:1.9e7"])",
+                     "--set", "training.training_points=24"});
+    built = json_of(words, *folder);
+  }
+  static void TearDownTestSuite() { delete folder; }
+  void expect_refused(const Words& words, const std::string& text) {
+    const Outcome outcome = run_undula(words, folder->path());
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(text), std::string::npos) << "no \"" << text << "\" in\n" << outcome.err;
+  }
+  /// Of the emulator or of the scene at 40 V and 45 mmHg.
+  nlohmann::json point(const std::string& file, Words settings, const std::string& voltage = "40") {
+    Words words = {"hq", file, "--voltage", voltage, "--frequency", "120", "--head", "45", "--json"};
+    words.insert(words.end(), settings.begin(), settings.end());
+    return json_of(words, *folder)["points"][0];
+  }
+  static double flow(const nlohmann::json& point) { return point["flow_l_per_min"].get<double>(); }
+
+  static inline ScratchFolder* folder = nullptr;
+  static inline nlohmann::json built;
+};
+
+TEST_F(FurtherInputs, AreEmulatedAsTheSceneHasThem) {
+  ASSERT_EQ(built["runs"].size(), 34u); // 4 corners of the operating points, 24 inside, 6 held out
+  EXPECT_LT(built["held_out"]["rms_l_per_min"], 0.02 * built["flow_range_l_per_min"].get<double>());
+  EXPECT_EQ(built["runs"][0]["membrane.young_dyn_per_cm2"], 1.686e7); // corners: as the scene states
+  EXPECT_NE(built["runs"][6]["membrane.young_dyn_per_cm2"], 1.686e7);
+  for (const std::string young : {"1.55e7", "1.8e7"}) {
+    const auto emulated = point("pump.h5", {"--set", "membrane.young_dyn_per_cm2=" + young});
+    const auto computed = point(scene, {"--set", "membrane.young_dyn_per_cm2=" + young});
+    EXPECT_LT(std::abs(flow(emulated) - flow(computed)), 2 * emulated["error_l_per_min"].get<double>());
+    EXPECT_LT(emulated["error_l_per_min"].get<double>(), 0.5);
+  }
+  const double stated = flow(point("pump.h5", {}));
+  EXPECT_NEAR(stated, flow(point("pump.h5", {"--set", "membrane.young_dyn_per_cm2=1.686e7"})), 1e-12);
+  EXPECT_GT(std::abs(flow(point("pump.h5", {"--set", "membrane.young_dyn_per_cm2=1.8e7"})) - stated), 0.1);
+  EXPECT_FALSE(point("pump.h5", {"--set", "membrane.young_dyn_per_cm2=2e7"})["inside_training_box"]);
+  expect_refused(
+      {"hq", "pump.h5", "--frequency", "120", "--voltage", "40", "--set", "membrane.young_dyn_per_cm2=x"},
+      "value of the key");
+  expect_refused({"hq", "pump.h5", "--frequency", "120", "--voltage", "40", "--set", "membrane.poisson=0.4"},
+                 "actuator.force_N_per_V, membrane.young_dyn_per_cm2");
+}
+
+TEST_F(FurtherInputs, AForcePerVoltScalesTheVoltage) {
+  const std::string key = "actuator.force_N_per_V=";
+  const double force = 0.42; // of the scene
+  const auto scaled = point("pump.h5", {"--set", key + std::to_string(force * 1.1)});
+  EXPECT_NEAR(flow(scaled), flow(point("pump.h5", {}, "44")), 1e-9);
+  EXPECT_NEAR(flow(scaled), flow(point(scene, {"--set", key + std::to_string(force * 1.1)})), 0.1);
+}
+
+TEST_F(FurtherInputs, CalibrationFindsTheModulusThatMadeTheData) {
+  {
+    std::ofstream data(folder->path() / "data.csv");
+    data << "# frequency_Hz: 120\n# voltage_V: 42\nhead_mmHg,flow_l_per_min\n";
+    for (const std::string head : {"30", "40", "50", "60"}) {
+      const auto answer = json_of({"hq", scene, "--voltage", "42", "--head", head, "--json", "--set",
+                                   "membrane.young_dyn_per_cm2=1.6e7"},
+                                  *folder);
+      data << head << "," << flow(answer["points"][0]) << "\n";
+    }
+  }
+  const Words words = {"calibrate", scene,        "--by",   "pump.h5",
+                       "--data",    "data.csv",   "--free", "membrane.young_dyn_per_cm2=1.5e7:1.9e7",
+                       "--output",  "found.toml", "--json", "--force"};
+  const auto found = json_of(words, *folder);
+  EXPECT_NEAR(found["keys"][0]["optimum"].get<double>(), 1.6e7, 1e5);
+  Words other = words;
+  other.insert(other.end(), {"--set", "membrane.poisson=0.48"});
+  expect_refused(other, "of another scene");
+  other = words;
+  other[7] = "membrane.poisson=0.4:0.49";
+  expect_refused(other, "has no such input");
+}
+
+TEST_F(FurtherInputs, AreRefusedWhereTheyMakeNoSense) {
+  const auto refused = [&](const std::string& vary, const std::string& text) {
+    expect_refused(train_words({"--set", "training.vary=[" + vary + "]"}), text);
+    expect_refused(
+        {"check", scene, "--set", "training.model=emulator", "--set", "training.vary=[" + vary + "]"}, text);
+  };
+  refused("\"membrane.young_dyn_per_cm2\"", "cannot be read");
+  refused("\"membrane.young=1:2\"", "unknown key");
+  refused("\"membrane.young_dyn_per_cm2=1.9e7:1.5e7\"", "no range");
+  refused("\"membrane.young_dyn_per_cm2=1.8e7:1.9e7\"", "outside of the range");
+  refused("\"membrane.poisson=0.4:0.8\"", "out of range");
+  refused("\"operating_point.head_mmHg=40:60\"", "range of its own");
+  refused("\"membrane.poisson=0.4:0.495\", \"membrane.poisson=0.4:0.495\"", "varied twice");
+  expect_refused({"train", UNDULA_SOURCE_DIR "/data/scenes/wave_pump_mapped_voltage.toml", "--set",
+                  R"(training.vary=["membrane.poisson=0.4:0.495"])", "--set", "training.model=projected"},
+                 "varies no further keys");
 }
 
 } // namespace

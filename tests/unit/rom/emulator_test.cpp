@@ -51,6 +51,34 @@ TEST(Emulator, AnswersInSurfaceUnitsAndDoubtsWhatIsOutside) {
   EXPECT_TRUE(std::isinf(emulate(emulator, {110, 45, 30}).values[0].error)); // no run at another frequency
 }
 
+/// The same with a modulus that moves the flow by 2 l/min over its range.
+Emulator with_modulus() {
+  auto emulator = linear_emulator();
+  emulator.inputs.push_back({"membrane.young_dyn_per_cm2", "dyn_per_cm2", 1e7, 2e7, 1.5e7});
+  emulator.force_N_per_V = 0.4;
+  emulator.quantities.pop_back();
+  Eigen::MatrixXd points(3, 64);
+  Eigen::VectorXd flows(64);
+  for (int i = 0; i < 64; ++i) {
+    points.col(i) << (i % 4) / 3.0, (i / 4 % 4) / 3.0, (i / 16) / 3.0;
+    flows[i] = 5 - 4 * (points(1, i) - 0.5) + (points(0, i) - 0.5) + 2 * (points(2, i) - 0.5);
+  }
+  emulator.quantities[0].process = {
+      points, flows, Eigen::VectorXd::Constant(64, 0.01), {Eigen::Vector3d(1, 1, 1), 0.2, 1e-4}};
+  for (auto& run : emulator.runs) run.point.push_back(1.2e7);
+  return emulator;
+}
+
+TEST(Emulator, FurtherInputsAreAsStatedUnlessTheyAreGiven) {
+  const auto emulator = with_modulus();
+  const double stated = emulate(emulator, {120, 45, 30}).values[0].value;
+  EXPECT_EQ(emulate(emulator, {120, 45, 30, 1.5e7}).values[0].value, stated);
+  EXPECT_NEAR(emulate(emulator, {120, 45, 30, 1.75e7}).values[0].value, stated + 0.5, 1e-3);
+  const auto outside = emulate(emulator, {120, 45, 30, 2.1e7});
+  EXPECT_FALSE(outside.inside_training_box);
+  EXPECT_GT(outside.values[0].error, 2 * emulate(emulator, {120, 45, 30, 2e7}).values[0].error);
+}
+
 class EmulatorFile : public testing::Test {
 protected:
   std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) / "undula_emulator.h5";
@@ -77,6 +105,22 @@ TEST_F(EmulatorFile, ComesBackAsItWasWritten) {
     EXPECT_EQ(before.values[q].value, after.values[q].value);
     EXPECT_EQ(before.values[q].error, after.values[q].error);
   }
+}
+
+TEST_F(EmulatorFile, KeepsFurtherInputs) {
+  save_emulator(with_modulus(), file_.string());
+  const auto read = load_emulator(file_.string());
+  ASSERT_EQ(read.inputs.size(), 4u);
+  EXPECT_EQ(read.inputs[3].name, "membrane.young_dyn_per_cm2");
+  EXPECT_EQ(read.inputs[3].unit, "dyn_per_cm2");
+  EXPECT_EQ(read.inputs[3].stated, 1.5e7);
+  EXPECT_EQ(read.force_N_per_V, 0.4);
+  EXPECT_EQ(read.runs[1].point, with_modulus().runs[1].point);
+  EXPECT_EQ(emulate(read, {120, 40, 40, 1.1e7}).values[0].value,
+            emulate(with_modulus(), {120, 40, 40, 1.1e7}).values[0].value);
+  auto broken = with_modulus();
+  broken.runs[0].point.pop_back();
+  EXPECT_THROW(save_emulator(broken, file_.string()), InputError);
 }
 
 TEST_F(EmulatorFile, RefusesOtherFilesAndDamage) {

@@ -126,6 +126,24 @@ TEST_F(CampaignStoreTest, RecordsComeBackBitForBit) {
   EXPECT_EQ(read.seconds, written.seconds);
 }
 
+TEST_F(CampaignStoreTest, VariedKeysTellRecordsApart) {
+  const CampaignStore store(folder, stamp);
+  OperatingPoint softer = plan(2)[1];
+  const OperatingPoint stated = softer;
+  softer.varied = {{"membrane.young_dyn_per_cm2", 1.55e7}, {"membrane.damping_time_s", 1e-4}};
+  OperatingPoint stiffer = softer;
+  stiffer.varied["membrane.young_dyn_per_cm2"] = 1.9e7;
+  for (const auto& point : {softer, stated}) store.store(*store.try_claim(point), record_of(point));
+  EXPECT_EQ(store.load(softer).point.varied, softer.varied);
+  EXPECT_TRUE(store.load(stated).point.varied.empty());
+  EXPECT_EQ(store.status(std::vector{softer, stated, stiffer}).pending.size(), 1u);
+  std::vector<std::string> damaged;
+  const auto recorded = store.recorded_points(damaged);
+  EXPECT_TRUE(damaged.empty());
+  ASSERT_EQ(recorded.size(), 2u);
+  EXPECT_EQ(recorded[0].varied.size() + recorded[1].varied.size(), 2u);
+}
+
 TEST_F(CampaignStoreTest, AFailedRunIsARecordToo) {
   const auto points = plan(1);
   const CampaignStore store(folder, stamp);

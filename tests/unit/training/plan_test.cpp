@@ -145,6 +145,34 @@ TEST(Plan, FixedRangesAreNotSampled) {
     }
 }
 
+TEST(Plan, VariedKeysAreRangesOfTheirOwnBesideTheSameOperatingPoints) {
+  const auto box = pump_box(12, 4);
+  const std::vector<VariedKey> varied = {{"membrane.young_dyn_per_cm2", "dyn_per_cm2", 1e7, 3e7, 1.5e7},
+                                         {"membrane.damping_time_s", "s", 1e-4, 2e-4, 2e-4}};
+  const auto plain = plan_samples(box), plan = plan_samples(box, {}, varied);
+  ASSERT_EQ(plan.training.size(), 20u);
+  std::set<double> moduli;
+  for (std::size_t k = 0; k < plan.training.size(); ++k) {
+    const auto& point = plan.training[k];
+    EXPECT_EQ(scaled(box, point), scaled(box, plain.training[k]));
+    EXPECT_TRUE(is_inside(box, point, varied));
+    if (k < 8) {
+      EXPECT_TRUE(point.varied.empty()); // corners: records of a campaign that varies nothing
+      continue;
+    }
+    ASSERT_EQ(point.varied.size(), 2u);
+    moduli.insert(point.varied.at("membrane.young_dyn_per_cm2"));
+    EXPECT_FALSE(is_inside(box, point)); // a campaign that does not vary them has no such point
+  }
+  EXPECT_EQ(moduli.size(), 12u);
+  EXPECT_LT(*moduli.begin(), 1.3e7);
+  EXPECT_GT(*moduli.rbegin(), 2.7e7);
+  for (const auto& point : plan.held_out) EXPECT_EQ(point.varied.size(), 2u);
+  auto outside = plan.training.back();
+  outside.varied["membrane.damping_time_s"] = 3e-4;
+  EXPECT_FALSE(is_inside(box, outside, varied));
+}
+
 TEST(Plan, RefusesEmptyBoxesAndImpossibleCounts) {
   auto box = pump_box(5, 3);
   box.stroke_low = 0.09;
