@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   undula::apps::add_solve_command(app);
   undula::apps::add_train_command(app);
   undula::apps::add_hq_command(app);
+  undula::apps::add_period_command(app);
   undula::apps::add_validate_command(app);
   undula::apps::add_calibrate_command(app);
   undula::apps::add_report_command(app);

@@ -32,6 +32,7 @@
 #include "training/campaign/campaign.hpp"
 #include "training/campaign/run_record_file.hpp"
 #include "training/emulation/build_emulator.hpp"
+#include "training/emulation/fit_responses.hpp"
 #include "training/emulation/next_points.hpp"
 #include "training/moving_domain/build_moving_model.hpp"
 #include "training/reduction/build_model.hpp"
@@ -358,6 +359,8 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     origin["scene_hash"] = scene_hash(scene);
     if (emulated) {
       BuiltEmulator built = build_emulator(scene, plan, *store);
+      PhaseTimer timer;
+      add_responses(built, scene, plan, *store, timer);
       built.emulator.provenance = origin;
       rom::save_emulator(built.emulator, output);
       for (const std::string& message : built.not_used) {

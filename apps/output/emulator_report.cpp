@@ -62,6 +62,16 @@ std::string emulator_text(const BuiltEmulator& built, const std::string& file) {
   std::string text = text_table(heads, rows);
   text += score_text("\nleft out one by one", built.left_out, built.flow_range);
   text += score_text("held out", built.held_out, built.flow_range);
+  for (const auto& response : built.responses) {
+    text += "over a period, " + response.name + ": " + std::to_string(response.modes) +
+            " modes; left out one by one off by " + decimals(100 * response.left_out, 2) +
+            " % of their size, the envelope by " + decimals(100 * response.envelope, 2) + " %";
+    if (response.held_out > 0) {
+      text += "; held out by " + decimals(100 * response.held_out, 2) + " and " +
+              decimals(100 * response.envelope_held_out, 2) + " %";
+    }
+    text += "\n";
+  }
   return text + "quantities: " + std::to_string(emulator.quantities.size()) + "\nwritten: " + file + "\n";
 }
 
@@ -73,6 +83,14 @@ std::string emulator_json(const BuiltEmulator& built, const std::string& file) {
                                    {"not_used", built.not_used},
                                    {"quantities", nlohmann::ordered_json::array()},
                                    {"runs", nlohmann::ordered_json::array()}};
+  for (const auto& response : built.responses) {
+    result["responses"].push_back({{"name", response.name},
+                                   {"modes", response.modes},
+                                   {"left_out", response.left_out},
+                                   {"held_out", response.held_out},
+                                   {"envelope_left_out", response.envelope},
+                                   {"envelope_held_out", response.envelope_held_out}});
+  }
   for (const auto& quantity : built.emulator.quantities) {
     result["quantities"].push_back(quantity.name);
   }

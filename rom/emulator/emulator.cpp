@@ -34,14 +34,18 @@ std::span<const EmulatorInput> further_inputs(const Emulator& emulator) {
   return std::span(emulator.inputs).subspan(point_inputs);
 }
 
-EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point) {
-  const Eigen::VectorXd x = scaled_point(emulator, point);
+double growth_at(const Emulator& emulator, const EmulatorPoint& point) {
   double off = 0;
   for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
     const auto& input = emulator.inputs[i];
     off = std::hypot(off, parts_outside(value_of(emulator, point, i), input.low, input.high));
   }
-  const double growth = growth_outside(off);
+  return growth_outside(off);
+}
+
+EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point) {
+  const Eigen::VectorXd x = scaled_point(emulator, point);
+  const double growth = growth_at(emulator, point);
   EmulatedPoint result;
   result.inside_training_box = growth == 1;
   for (const auto& quantity : emulator.quantities) {

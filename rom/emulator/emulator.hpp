@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "rom/emulator/emulated_response.hpp"
 #include "rom/emulator/gaussian_process.hpp"
 #include "rom/fixed_domain/model.hpp"
 
@@ -21,8 +22,6 @@ struct EmulatorInput {
 
 /// The inputs of an operating point: frequency, drive, head, in this order. Further ones come after them.
 inline constexpr std::size_t point_inputs = 3;
-/// A value per input; without the further ones, they are as stated.
-using EmulatorPoint = std::vector<double>;
 
 struct EmulatedQuantity {
   std::string name, unit;
@@ -45,6 +44,7 @@ struct Emulator {
   double force_N_per_V = 0;       ///< of the actuator that a voltage drives; 0: not known
   std::vector<EmulatorInput> inputs;
   std::vector<EmulatedQuantity> quantities; ///< the mean outflow, l/min, first
+  std::vector<EmulatedResponse> responses;  ///< empty where the runs recorded no fields
   std::vector<EmulatorRun> runs;
   std::map<std::string, std::string> provenance; ///< as of Model
 };
@@ -67,6 +67,9 @@ std::span<const EmulatorInput> further_inputs(const Emulator& emulator);
 
 /// What the emulator says of one point. Outside of the box errors grow as growth_outside.
 EmulatedPoint emulate(const Emulator& emulator, const EmulatorPoint& point);
+
+/// Factor on stated errors: 1 inside of the box, see growth_outside.
+double growth_at(const Emulator& emulator, const EmulatorPoint& point);
 
 /// The coordinates of a point in an emulator's processes.
 Eigen::VectorXd scaled_point(const Emulator& emulator, const EmulatorPoint& point);

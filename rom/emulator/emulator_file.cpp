@@ -48,39 +48,85 @@ Eigen::VectorXd read_vector(const Hdf5File& file, const std::string& name) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-void write_quantity(Hdf5File& file, const std::string& group, const EmulatedQuantity& quantity) {
-  const auto& process = quantity.process;
+void write_process(Hdf5File& file, const std::string& group, const GaussianProcess& process,
+                   const std::string& unit) {
   const RowMajor points = process.points().transpose();
-  file.create_group(group);
-  file.write_attribute(group, "name", quantity.name);
-  file.write_attribute(group, "unit", quantity.unit);
-  file.write_attribute(group, "error_factor", quantity.error_factor);
   file.write_attribute(group, "variance", process.parameters().variance);
   file.write_attribute(group, "nugget", process.parameters().nugget);
   file.write(group + "/points", std::span(points.data(), extent(points.size())),
              {extent(points.rows()), extent(points.cols())}, "1");
-  write_vector(file, group + "/values", process.values(), quantity.unit);
-  write_vector(file, group + "/standard_errors", process.noise(), quantity.unit);
+  write_vector(file, group + "/values", process.values(), unit);
+  write_vector(file, group + "/standard_errors", process.noise(), unit);
   write_vector(file, group + "/lengths", process.parameters().lengths, "1");
 }
 
-EmulatedQuantity read_quantity(const Hdf5File& file, const std::string& group) {
+GaussianProcess read_process(const Hdf5File& file, const std::string& group) {
   const auto extents = file.extents(group + "/points");
   if (extents.size() != 2)
     refuse("points of a quantity", std::to_string(extents.size()) + " dimensions", "2", file.path().string());
   const auto points = file.read<double>(group + "/points");
   const auto attribute = [&](const char* name) { return file.read_attribute<double>(group, name); };
-  const double factor = attribute("error_factor");
+  return {Eigen::Map<const RowMajor>(points.data(), static_cast<Eigen::Index>(extents[0]),
+                                     static_cast<Eigen::Index>(extents[1]))
+              .transpose(),
+          read_vector(file, group + "/values"),
+          read_vector(file, group + "/standard_errors"),
+          {read_vector(file, group + "/lengths"), attribute("variance"), attribute("nugget")}};
+}
+
+void write_quantity(Hdf5File& file, const std::string& group, const EmulatedQuantity& quantity) {
+  file.create_group(group);
+  file.write_attribute(group, "name", quantity.name);
+  file.write_attribute(group, "unit", quantity.unit);
+  file.write_attribute(group, "error_factor", quantity.error_factor);
+  write_process(file, group, quantity.process, quantity.unit);
+}
+
+EmulatedQuantity read_quantity(const Hdf5File& file, const std::string& group) {
+  const double factor = file.read_attribute<double>(group, "error_factor");
   if (!std::isfinite(factor) || factor <= 0)
     refuse("factor of the stated error", std::to_string(factor), "a finite number > 0", file.path().string());
-  GaussianProcess process(
-      Eigen::Map<const RowMajor>(points.data(), static_cast<Eigen::Index>(extents[0]),
-                                 static_cast<Eigen::Index>(extents[1]))
-          .transpose(),
-      read_vector(file, group + "/values"), read_vector(file, group + "/standard_errors"),
-      {read_vector(file, group + "/lengths"), attribute("variance"), attribute("nugget")});
   return {file.read_attribute<std::string>(group, "name"), file.read_attribute<std::string>(group, "unit"),
-          std::move(process), factor};
+          read_process(file, group), factor};
+}
+
+void write_response(Hdf5File& file, const std::string& group, const EmulatedResponse& response) {
+  file.create_group(group);
+  file.write_attribute(group, "name", response.name);
+  file.write_attribute(group, "unit", response.unit);
+  file.write_attribute(group, "phases", response.phases);
+  file.write_attribute(group, "error", response.error);
+  file.write_attribute(group, "modes", static_cast<int>(response.coefficients.size()));
+  file.write(group + "/places", response.places_mm, {response.places_mm.size()}, "mm");
+  write_vector(file, group + "/mean", response.mean, response.unit);
+  // A column-major [value][mode] matrix is a row-major [mode][value] array.
+  file.write(group + "/modes", std::span(response.modes.data(), extent(response.modes.size())),
+             {extent(response.modes.cols()), extent(response.modes.rows())}, "1");
+  for (std::size_t k = 0; k < response.coefficients.size(); ++k) {
+    const std::string coefficient = group + "/" + std::to_string(k);
+    file.create_group(coefficient);
+    write_process(file, coefficient, response.coefficients[k], response.unit);
+  }
+}
+
+EmulatedResponse read_response(const Hdf5File& file, const std::string& group) {
+  EmulatedResponse response;
+  response.name = file.read_attribute<std::string>(group, "name");
+  response.unit = file.read_attribute<std::string>(group, "unit");
+  response.phases = file.read_attribute<int>(group, "phases");
+  response.error = file.read_attribute<double>(group, "error");
+  const int modes = file.read_attribute<int>(group, "modes");
+  if (modes < 0 || modes > most_quantities)
+    refuse("modes of " + response.name, std::to_string(modes), "at most " + std::to_string(most_quantities),
+           file.path().string());
+  response.places_mm = file.read<double>(group + "/places");
+  response.mean = read_vector(file, group + "/mean");
+  const auto values =
+      file.read<double>(group + "/modes", {static_cast<std::size_t>(modes), extent(response.mean.size())});
+  response.modes = Eigen::Map<const Eigen::MatrixXd>(values.data(), response.mean.size(), modes);
+  for (int k = 0; k < modes; ++k)
+    response.coefficients.push_back(read_process(file, group + "/" + std::to_string(k)));
+  return response;
 }
 
 void write_runs(Hdf5File& file, const std::vector<EmulatorRun>& runs, std::size_t inputs) {
@@ -114,6 +160,13 @@ std::vector<EmulatorRun> read_runs(const Hdf5File& file, std::size_t inputs) {
   return runs;
 }
 
+void check_inputs(const std::string& name, const GaussianProcess& process, Eigen::Index widths,
+                  const std::string& file) {
+  if (process.points().rows() != widths)
+    refuse("points of " + name, std::to_string(process.points().rows()) + " inputs",
+           "as many as there are ranges with a width, " + std::to_string(widths), file);
+}
+
 /// What the processes do not check themselves.
 void check_meaning(const Emulator& emulator, const std::string& file) {
   Eigen::Index widths = 0;
@@ -130,12 +183,19 @@ void check_meaning(const Emulator& emulator, const std::string& file) {
   }
   if (emulator.quantities.empty()) refuse("quantities", "none", "the mean outflow, and others", file);
   for (const auto& quantity : emulator.quantities)
-    if (quantity.process.points().rows() != widths)
-      refuse("points of " + quantity.name, std::to_string(quantity.process.points().rows()) + " inputs",
-             "as many as there are ranges with a width, " + std::to_string(widths), file);
+    check_inputs(quantity.name, quantity.process, widths, file);
+  for (const auto& response : emulator.responses) {
+    const auto size = static_cast<Eigen::Index>(response.places_mm.size()) * response.phases;
+    if (response.phases < 1 || response.mean.size() != size || response.modes.rows() != size ||
+        response.modes.cols() != static_cast<Eigen::Index>(response.coefficients.size()))
+      refuse("values of " + response.name, std::to_string(response.mean.size()),
+             "one per place and phase, for the mean and every mode", file);
+    for (const auto& process : response.coefficients) check_inputs(response.name, process, widths, file);
+  }
 }
 
 std::string group_of(std::size_t quantity) { return "quantities/" + std::to_string(quantity); }
+std::string response_group(std::size_t response) { return "responses/" + std::to_string(response); }
 
 } // namespace
 
@@ -159,6 +219,10 @@ void save_emulator(const Emulator& emulator, const std::string& name) {
   file.write_attribute("quantities", "count", static_cast<int>(emulator.quantities.size()));
   for (std::size_t q = 0; q < emulator.quantities.size(); ++q)
     write_quantity(file, group_of(q), emulator.quantities[q]);
+  file.create_group("responses");
+  file.write_attribute("responses", "count", static_cast<int>(emulator.responses.size()));
+  for (std::size_t r = 0; r < emulator.responses.size(); ++r)
+    write_response(file, response_group(r), emulator.responses[r]);
   write_runs(file, emulator.runs, emulator.inputs.size());
   write_provenance(file, emulator.provenance);
   file.commit();
@@ -191,6 +255,11 @@ Emulator load_emulator(const std::string& name) {
     refuse("quantities", std::to_string(count), "1 to " + std::to_string(most_quantities), name);
   for (std::size_t q = 0; q < static_cast<std::size_t>(count); ++q)
     emulator.quantities.push_back(read_quantity(file, group_of(q)));
+  const int responses = further ? file.read_attribute<int>("responses", "count") : 0;
+  if (responses < 0 || responses > most_quantities)
+    refuse("responses", std::to_string(responses), "at most " + std::to_string(most_quantities), name);
+  for (std::size_t r = 0; r < static_cast<std::size_t>(responses); ++r)
+    emulator.responses.push_back(read_response(file, response_group(r)));
   emulator.runs = read_runs(file, emulator.inputs.size());
   emulator.provenance = read_provenance(file);
   check_meaning(emulator, name);

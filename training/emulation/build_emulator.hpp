@@ -20,11 +20,21 @@ struct EmulatorScore {
   double error_over_true = 0; ///< stated over true error, median
 };
 
+/// How well it says the course over a period.
+struct ResponseScore {
+  std::string name;
+  int modes = 0;
+  double left_out = 0;                        ///< norm of all differences over that of all runs
+  double held_out = 0;                        ///< the same of runs that no mode has seen; 0: none
+  double envelope = 0, envelope_held_out = 0; ///< the same of least and largest value at every place
+};
+
 struct BuiltEmulator {
   rom::Emulator emulator;
-  EmulatorScore left_out;            ///< every training run from all others
-  EmulatorScore held_out;            ///< runs that no process has seen; runs = 0: none
-  double flow_range = 0;             ///< l/min, of all runs
+  EmulatorScore left_out; ///< every training run from all others
+  EmulatorScore held_out; ///< runs that no process has seen; runs = 0: none
+  double flow_range = 0;  ///< l/min, of all runs
+  std::vector<ResponseScore> responses;
   std::vector<std::string> not_used; ///< runs that failed or whose mean is not known, and why
 };
 

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "apps/apps.hpp"
+#include "rom/emulator/emulator.hpp"
 #include "tests/unit/apps/run_undula.hpp"
 
 namespace undula::apps {
@@ -279,6 +281,73 @@ TEST_F(FurtherInputs, CalibrationFindsTheModulusThatMadeTheData) {
   other = words;
   other[7] = "membrane.poisson=0.4:0.49";
   expect_refused(other, "has no such input");
+}
+
+/// Outflow 1 + head / 10 plus a sine of as much as the head, a membrane of three places.
+void save_known_course(const std::filesystem::path& file) {
+  constexpr int runs = 6, phases = 12;
+  Eigen::MatrixXd points(1, runs);
+  Eigen::VectorXd heads(runs);
+  for (int i = 0; i < runs; ++i) {
+    points(0, i) = i / (runs - 1.0);
+    heads[i] = 10 * points(0, i);
+  }
+  const rom::ProcessParameters parameters{Eigen::VectorXd::Constant(1, 1), 1, 1e-8};
+  const rom::GaussianProcess head(points, heads, Eigen::VectorXd::Zero(runs), parameters);
+  rom::Emulator emulator;
+  emulator.driven_by_voltage = true;
+  emulator.inputs = {{"frequency", "Hz", 120, 120}, {"voltage", "V", 40, 40}, {"head", "mmHg", 0, 10}};
+  emulator.quantities.push_back({"flow_l_per_min", "l/min", head, 1});
+  rom::EmulatedResponse outflow{"outflow_l_per_min", "l/min", {0}, phases, {}, {}, {head}, 0.1};
+  outflow.mean = Eigen::VectorXd::Constant(phases, 1);
+  outflow.modes.resize(phases, 1);
+  for (int k = 0; k < phases; ++k) {
+    outflow.modes(k, 0) = 0.1 + std::sin(2 * std::numbers::pi * k / phases);
+  }
+  rom::EmulatedResponse membrane{"membrane_mm", "mm", {5, 10, 15}, phases, {}, {}, {}, 0.02};
+  membrane.mean = Eigen::VectorXd::LinSpaced(3 * phases, 0, 1);
+  membrane.modes.resize(3 * phases, 0);
+  emulator.responses = {membrane, outflow};
+  rom::save_emulator(emulator, file.string());
+}
+
+TEST(PeriodCommand, ShowsTheCourseOfMembraneAndOutflow) {
+  const ScratchFolder folder;
+  save_known_course(folder.path() / "pump.h5");
+  const Words ask = {"period", "pump.h5", "--frequency", "120", "--voltage", "40", "--head", "6"};
+  Words json = ask;
+  json.insert(json.end(), {"--json", "--plot", "period.png"});
+  const auto course = json_of(json, folder);
+  EXPECT_EQ(course["head_mmHg"], 6);
+  const auto &membrane = course["quantities"][0], &outflow = course["quantities"][1];
+  ASSERT_EQ(outflow["values_by_phase"].size(), 12u);
+  EXPECT_NEAR(outflow["values_by_phase"][0][0].get<double>(), 1.6, 1e-3);
+  EXPECT_NEAR(outflow["values_by_phase"][3][0].get<double>(), 7.6, 1e-3);
+  EXPECT_EQ(outflow["error"], 0.1);
+  EXPECT_NEAR(membrane["values_by_phase"][2][1].get<double>(), 7.0 / 35, 1e-12);
+  EXPECT_EQ(membrane["places_mm"], nlohmann::json({5, 10, 15}));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "period.png"));
+  const std::string table = run_undula(ask, folder.path()).out;
+  EXPECT_NE(table.find("membrane_mm at 5 mm"), std::string::npos) << table;
+  EXPECT_NE(table.find("90.0"), std::string::npos);
+  EXPECT_NE(table.find("7.6"), std::string::npos);
+  const Outcome outside = run_undula(
+      {"period", "pump.h5", "--frequency", "120", "--voltage", "40", "--head", "12"}, folder.path());
+  EXPECT_NE(outside.err.find("head 12 mmHg is outside"), std::string::npos) << outside.err;
+  const auto refused = [&](const Words& words, const std::string& text) {
+    const Outcome outcome = run_undula(words, folder.path());
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err.find(text), std::string::npos) << outcome.err;
+  };
+  refused({"period", scene, "--frequency", "120", "--head", "40"}, "computed, not looked up");
+  refused(
+      {"period", UNDULA_SOURCE_DIR "/data/models/wave_pump_fixed.h5", "--frequency", "120", "--head", "40"},
+      "keeps no course");
+}
+
+TEST_F(FurtherInputs, HaveNoCourseWhereTheRunsRecordedNone) {
+  expect_refused({"period", "pump.h5", "--frequency", "120", "--voltage", "40", "--head", "40"},
+                 "recorded no fields");
 }
 
 TEST_F(FurtherInputs, AreRefusedWhereTheyMakeNoSense) {

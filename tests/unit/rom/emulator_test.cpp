@@ -66,6 +66,10 @@ Emulator with_modulus() {
   emulator.quantities[0].process = {
       points, flows, Eigen::VectorXd::Constant(64, 0.01), {Eigen::Vector3d(1, 1, 1), 0.2, 1e-4}};
   for (auto& run : emulator.runs) run.point.push_back(1.2e7);
+  EmulatedResponse response{"outflow_l_per_min", "l/min", {0}, 4, Eigen::Vector4d(1, 2, 3, 2), {}, {}, 0.3};
+  response.modes = Eigen::Vector4d(0.5, -0.5, 0.5, -0.5);
+  response.coefficients.push_back(emulator.quantities[0].process);
+  emulator.responses.push_back(std::move(response));
   return emulator;
 }
 
@@ -118,7 +122,18 @@ TEST_F(EmulatorFile, KeepsFurtherInputs) {
   EXPECT_EQ(read.runs[1].point, with_modulus().runs[1].point);
   EXPECT_EQ(emulate(read, {120, 40, 40, 1.1e7}).values[0].value,
             emulate(with_modulus(), {120, 40, 40, 1.1e7}).values[0].value);
+  ASSERT_EQ(read.responses.size(), 1u);
+  EXPECT_EQ(read.responses[0].name, "outflow_l_per_min");
+  const EmulatorPoint there{120, 40, 40, 1.1e7};
+  const auto course = emulate(read, read.responses[0], there);
+  EXPECT_EQ(course.values, emulate(with_modulus(), with_modulus().responses[0], there).values);
+  EXPECT_NEAR(course.values(0, 1) - course.values(0, 3), 0, 1e-12);
+  EXPECT_NEAR(course.values(0, 0) - 1, 0.5 * emulate(read, there).values[0].value, 1e-12);
+  EXPECT_EQ(course.error, 0.3);
   auto broken = with_modulus();
+  broken.responses[0].phases = 5;
+  EXPECT_THROW(save_emulator(broken, file_.string()), InputError);
+  broken = with_modulus();
   broken.runs[0].point.pop_back();
   EXPECT_THROW(save_emulator(broken, file_.string()), InputError);
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -11,6 +12,7 @@
 #include "rom/base/units.hpp"
 #include "training/campaign/campaign.hpp"
 #include "training/campaign/recorded_level.hpp"
+#include "training/emulation/fit_responses.hpp"
 #include "training/moving_domain/build_moving_model.hpp"
 #include "training/sampling/trainable_scene.hpp"
 
@@ -84,6 +86,35 @@ TEST_F(MovingModel, MarchesAsTheRunItWasMadeFrom) {
   EXPECT_EQ(level.remarks(asked, std::span(&other, 1)).size(), 1U);
   EXPECT_TRUE(std::isinf(level.curve(asked, std::span(&other, 1)).front().error_l_per_min));
   EXPECT_THROW(scene_of_moving_model(built.model, "model", 120, {}), InputError);
+}
+
+// The membrane's outermost probe moves with the holder, the flow's mean over the phases is that of the
+// period.
+TEST_F(MovingModel, TheRecordedCourseOverAPeriodIsThatOfTheRun) {
+  PhaseTimer timer;
+  const auto prepared = prepare_scene(scene, MPI_COMM_SELF, timer);
+  const auto record = store->load(plan.training.front());
+  const auto quantities = recorded_quantities(*prepared, scene);
+  const auto values = recorded_values(*prepared, scene, record);
+  ASSERT_EQ(values.size(), 2U);
+  const auto places = static_cast<Eigen::Index>(quantities[0].places_mm.size());
+  ASSERT_EQ(values[0].size(), places * 12);
+  ASSERT_EQ(values[1].size(), 12);
+  const auto last = [&](const std::string& column, const std::vector<double>& of) {
+    const auto& columns = record.cycles.columns;
+    const auto at = std::ranges::find(columns, column) - columns.begin();
+    return of[of.size() - columns.size() + static_cast<std::size_t>(at)];
+  };
+  const double mean = last("outflow_l_per_min", record.cycles.mean);
+  const double swing =
+      last("outflow_l_per_min", record.cycles.maximum) - last("outflow_l_per_min", record.cycles.minimum);
+  EXPECT_NEAR(values[1].mean(), mean, 0.02 * swing);
+  EXPECT_GT(values[1].maxCoeff() - values[1].minCoeff(), 0.8 * swing);
+  double outermost = 0;
+  for (Eigen::Index k = 0; k < 12; ++k)
+    outermost = std::max(outermost, std::abs(values[0][k * places + places - 1]));
+  const double stroke = curve_point_of(scene, record).stroke_mm;
+  EXPECT_NEAR(outermost, stroke, 0.15 * stroke); // the phases miss the peak, and there is an offset
 }
 
 TEST_F(MovingModel, IsRefusedOnAnotherMesh) {
