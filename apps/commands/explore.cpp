@@ -1,5 +1,6 @@
-// undula explore MODEL.h5: a page on this machine to move through a model's curves.
+// undula explore MODEL.h5 [OTHER.h5 ...]: a page on this machine to move through the curves of models.
 //   undula explore data/models/wave_pump_fixed.h5
+//   undula explore pump.h5 other.h5
 //   undula explore pump.h5 --data data/measured/corwave_120hz_0.53mm.csv --port 8765
 #include <iostream>
 #include <memory>
@@ -13,7 +14,7 @@ namespace undula::apps {
 namespace {
 
 struct ExploreOptions {
-  std::string file;
+  std::vector<std::string> models;
   std::vector<std::string> data;
   int port = 0;
 };
@@ -22,8 +23,11 @@ struct ExploreOptions {
 
 void add_explore_command(CLI::App& app) {
   auto options = std::make_shared<ExploreOptions>();
-  CLI::App* command = app.add_subcommand("explore", "Page on this machine to move through a model's curves");
-  command->add_option("model", options->file, "reduced model or emulator (HDF5) made by undula train")
+  CLI::App* command =
+      app.add_subcommand("explore", "Page on this machine to move through the curves of models");
+  command
+      ->add_option("models", options->models,
+                   "reduced models or emulators (HDF5) made by undula train: one to ask, others to compare")
       ->required();
   command
       ->add_option("--data", options->data, "measured points (CSV) to show beside the curve, may be repeated")
@@ -32,7 +36,7 @@ void add_explore_command(CLI::App& app) {
       ->check(CLI::Range(0, 65535));
   command->callback([options] {
     if (is_first_process()) {
-      serve_explorer(ExploredModel(options->file, options->data), options->port, [](int port) {
+      serve_explorer(Exploration(options->models, options->data), options->port, [](int port) {
         std::cout << "http://127.0.0.1:" << port << "/" << std::endl; // now, whoever reads it
       });
     }

@@ -1,40 +1,52 @@
-// What the explorer knows: one model, and measured curves to show beside it. Answers are texts in JSON.
+// One model of the explorer: what it can be asked, and its answers as numbers.
 #pragma once
 
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "apps/apps.hpp"
 #include "apps/input/level_source.hpp"
-#include "apps/input/measured_curve.hpp"
+#include "rom/curve/pump_period.hpp"
 
 namespace undula::apps {
 
 class ExploredModel {
 public:
-  /// Reads a reduced model or an emulator, and measured curves. Throws InputError for other files.
-  ExploredModel(const std::string& file, const std::vector<std::string>& data);
+  /// Reads a reduced model of a fixed domain or an emulator. Throws InputError for other files.
+  explicit ExploredModel(const std::string& file);
 
-  /// The model's kind, the ranges of frequency, drive and head, and the measured samples.
-  [[nodiscard]] std::string description() const;
+  [[nodiscard]] const std::string& file() const { return source_.file; }
+  [[nodiscard]] bool by_voltage() const { return source_.emulator && source_.emulator->driven_by_voltage; }
+  [[nodiscard]] rom::TrainingBox box() const;
 
-  /// What `undula hq FILE --json` prints, with the remarks that it logs. `heads` as for --head. Throws
-  /// InputError for what is no point of the model's box, and for more than `most_heads` heads. May be called
-  /// from several threads.
-  [[nodiscard]] std::string curve(double frequency_Hz, double drive, const std::string& heads) const;
+  /// Name, level, drive, ranges of frequency, drive and head, the fluid of its runs (null where the file does
+  /// not tell), and why there is no period or no scene ("" where there is).
+  [[nodiscard]] nlohmann::ordered_json description() const;
 
-  static constexpr std::size_t most_heads = 200;
+  /// May be called from several threads.
+  [[nodiscard]] Level& level() const { return *level_; }
+
+  /// A scene at an operating point. Throws InputError for numbers that are none.
+  [[nodiscard]] Scene scene_of(double frequency_Hz, double drive) const;
+
+  /// Throws InputError for what lies outside of the box: the page never extrapolates.
+  void require_inside(double frequency_Hz, double drive, std::span<const double> heads_mmHg) const;
+
+  /// One period of the periodic state. Throws InputError for a model that knows means alone.
+  [[nodiscard]] rom::PumpPeriod period(double frequency_Hz, double drive, double head_mmHg) const;
+
+  /// The scene that the model was made from (TOML), at an operating point. Throws InputError where the file
+  /// does not tell it.
+  [[nodiscard]] std::string scene_text(double frequency_Hz, double drive, double head_mmHg) const;
 
 private:
-  [[nodiscard]] rom::TrainingBox box() const;
-  [[nodiscard]] bool by_voltage() const { return source_.emulator && source_.emulator->driven_by_voltage; }
-  [[nodiscard]] Scene scene_of(double frequency_Hz, double drive) const;
+  [[nodiscard]] const std::string& told_scene() const; ///< TOML; empty: not told
 
   LevelSource source_;
   std::unique_ptr<Level> level_;
-  std::vector<std::string> data_files_;
-  std::vector<MeasuredCurve> measured_;
 };
 
 } // namespace undula::apps

@@ -47,7 +47,7 @@ std::string parameter(const httplib::Request& request, const char* name) {
   if (value.empty() || value.size() > longest_parameter) {
     throw InputError(std::string("the question does not state one ") + name,
                      std::to_string(count) + " times, " + std::to_string(value.size()) + " characters",
-                     "once, at most " + std::to_string(longest_parameter) + " characters", "/curve");
+                     "once, at most " + std::to_string(longest_parameter) + " characters", request.path);
   }
   return value;
 }
@@ -57,7 +57,7 @@ double number(const httplib::Request& request, const char* name) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw InputError(std::string(name) + " is no number", '"' + text + '"', "a finite number", "/curve");
+    throw InputError(std::string(name) + " is no number", '"' + text + '"', "a finite number", request.path);
   }
   return value;
 }
@@ -69,29 +69,70 @@ bool is_of_this_server(const httplib::Request& request, int port) {
   return request.get_header_value_count("Host") == 1 && (host == address + at || host == "localhost" + at);
 }
 
-void add_pages(httplib::Server& server, const ExploredModel& model) {
-  server.Get("/", [](const httplib::Request&, httplib::Response& response) {
-    answer(response, ok, explorer_html(), "text/html; charset=utf-8");
-  });
-  server.Get("/explore.js", [](const httplib::Request&, httplib::Response& response) {
-    answer(response, ok, explorer_script(), "text/javascript; charset=utf-8");
-  });
-  server.Get("/explore.css", [](const httplib::Request&, httplib::Response& response) {
-    answer(response, ok, explorer_style(), "text/css; charset=utf-8");
-  });
-  server.Get("/model", [&model](const httplib::Request&, httplib::Response& response) {
-    answer(response, ok, model.description(), "application/json");
-  });
-  server.Get("/curve", [&model](const httplib::Request& request, httplib::Response& response) {
+/// The number of a model in the list of the command line; 0 where the question does not say.
+std::size_t model_of(const httplib::Request& request) {
+  if (!request.has_param("model")) {
+    return 0;
+  }
+  const std::string text = parameter(request, "model");
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw InputError("model is no number of a model", '"' + text + '"', "0, 1, ...", "model");
+  }
+  return value;
+}
+
+/// Answers by `work`, with refusals told in JSON.
+template <class Work>
+httplib::Server::Handler answered_by(const Work& work, const char* type) {
+  return [work, type](const httplib::Request& request, httplib::Response& response) {
     try {
-      const double frequency = number(request, "frequency"), drive = number(request, "drive");
-      answer(response, ok, model.curve(frequency, drive, parameter(request, "heads")), "application/json");
+      answer(response, ok, work(request), type);
     } catch (const InputError& error) {
       refuse(response, bad_request, error.what());
     } catch (const std::exception& error) {
       refuse(response, failed, error.what());
     }
-  });
+  };
+}
+
+void add_pages(httplib::Server& server, const Exploration& exploration) {
+  for (const PageFile& file : explorer_page()) {
+    server.Get(file.path, [file](const httplib::Request&, httplib::Response& response) {
+      answer(response, ok, file.text, file.type);
+    });
+  }
+  constexpr const char* json = "application/json";
+  server.Get("/models",
+             answered_by([&](const httplib::Request&) { return exploration.description(); }, json));
+  server.Get("/curve", answered_by(
+                           [&](const httplib::Request& request) {
+                             const double frequency = number(request, "frequency"),
+                                          drive = number(request, "drive");
+                             const auto tolerance = request.has_param("tolerance")
+                                                        ? std::optional(number(request, "tolerance"))
+                                                        : std::nullopt;
+                             return exploration.curve(model_of(request), frequency, drive,
+                                                      parameter(request, "heads"), tolerance);
+                           },
+                           json));
+  const auto at_one_head = [](const auto& work) {
+    return [work](const httplib::Request& request) {
+      const double frequency = number(request, "frequency"), drive = number(request, "drive");
+      return work(model_of(request), frequency, drive, number(request, "head"));
+    };
+  };
+  server.Get("/period",
+             answered_by(at_one_head([&](std::size_t model, double frequency, double drive, double head) {
+                           return exploration.period(model, frequency, drive, head);
+                         }),
+                         json));
+  server.Get("/scene",
+             answered_by(at_one_head([&](std::size_t model, double frequency, double drive, double head) {
+                           return exploration.scene(model, frequency, drive, head);
+                         }),
+                         "application/toml; charset=utf-8"));
 }
 
 /// What holds for every answer.
@@ -129,7 +170,7 @@ void add_rules(httplib::Server& server, int port) {
 
 } // namespace
 
-void serve_explorer(const ExploredModel& model, int port, const std::function<void(int)>& on_ready) {
+void serve_explorer(const Exploration& exploration, int port, const std::function<void(int)>& on_ready) {
   httplib::Server server;
   // The library would share a port that another process serves.
   server.set_socket_options([](socket_t socket) {
@@ -143,7 +184,7 @@ void serve_explorer(const ExploredModel& model, int port, const std::function<vo
     throw InputError("the port cannot be served", std::to_string(port), "a free one, or 0 for any", "--port");
   }
   add_rules(server, bound);
-  add_pages(server, model);
+  add_pages(server, exploration);
 
   // Signals are waited for by a thread of their own, which may stop the server; no other thread sees them.
   sigset_t stops, before;

@@ -10,9 +10,9 @@
 #include "apps/python/module.hpp"
 #include "apps/python/numpy_views.hpp"
 #include "rom/base/text_file.hpp"
-#include "rom/base/units.hpp"
 #include "rom/curve/projected_curve.hpp"
 #include "rom/curve/pump_period.hpp"
+#include "rom/curve/stated_drive.hpp"
 #include "rom/emulator/emulated_curve.hpp"
 
 namespace undula::python {
@@ -35,10 +35,6 @@ struct Period {
   rom::PumpPeriod values;
 };
 
-/// The stroke as scenes keep it, in cm: the command line asks models through a scene, and answers have to
-/// agree to the last digit.
-double through_scene(double stroke_mm) { return units::length_to_mm(units::length_from_mm(stroke_mm)); }
-
 /// Remarks of a curve: `outside` and its points that are not periodic. They are warned of as well.
 Curve finished(Curve curve, std::vector<std::string> outside) {
   curve.remarks = std::move(outside);
@@ -52,7 +48,7 @@ Curve finished(Curve curve, std::vector<std::string> outside) {
 
 Curve curve_of(const ReducedModel& source, double frequency_Hz, const Numbers& heads_mmHg,
                const OptionalNumber& stroke_mm, const OptionalNumber& voltage_V) {
-  const double stroke = through_scene(
+  const double stroke = rom::stroke_of_scenes(
       rom::drive_of({stroke_mm, voltage_V}, false, "a reduced model of this version", source.file));
   const auto heads = list_of(heads_mmHg, "heads_mmHg");
   Curve curve{"reduced model", frequency_Hz, {stroke_mm, {}}, {}, {}};
@@ -68,7 +64,7 @@ Curve curve_of(const Emulator& source, double frequency_Hz, const Numbers& heads
   const auto& emulator = source.emulator;
   const bool by_voltage = emulator.driven_by_voltage;
   const double stated = rom::drive_of({stroke_mm, voltage_V}, by_voltage, "the emulator", source.file);
-  const double drive = by_voltage ? stated : through_scene(stated);
+  const double drive = by_voltage ? stated : rom::stroke_of_scenes(stated);
   const auto heads = list_of(heads_mmHg, "heads_mmHg");
   Curve curve{"emulator", frequency_Hz, {stroke_mm, voltage_V}, {}, {}};
   {
@@ -79,7 +75,7 @@ Curve curve_of(const Emulator& source, double frequency_Hz, const Numbers& heads
 }
 
 Period period_of(const ReducedModel& source, double frequency_Hz, double head_mmHg, double stroke_mm) {
-  const double stroke = through_scene(stroke_mm);
+  const double stroke = rom::stroke_of_scenes(stroke_mm);
   Period period{frequency_Hz, stroke_mm, head_mmHg, {}};
   {
     const py::gil_scoped_release others_run;

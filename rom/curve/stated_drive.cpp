@@ -4,6 +4,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "rom/base/units.hpp"
 
 namespace undula::rom {
 
@@ -24,5 +25,7 @@ double drive_of(const StatedDrive& stated, bool by_voltage, const std::string& m
                      "a finite number > 0", where);
   return *drive;
 }
+
+double stroke_of_scenes(double stroke_mm) { return units::length_to_mm(units::length_from_mm(stroke_mm)); }
 
 } // namespace undula::rom

@@ -17,4 +17,8 @@ struct StatedDrive {
 double drive_of(const StatedDrive& stated, bool by_voltage, const std::string& model,
                 const std::string& where);
 
+/// A stroke as scenes keep it, in cm, and back: the command line asks models through a scene, and the answers
+/// of other callers have to agree with it to the last digit.
+double stroke_of_scenes(double stroke_mm);
+
 } // namespace undula::rom

@@ -50,16 +50,20 @@ class Explorer:
         return self.process.wait(timeout=20)
 
 
+OTHER = SOURCE / "data/models/wave_pump_mapped_voltage.h5"
+
+
 @pytest.fixture(scope="module")
-def explorer():
-    running = Explorer(PROJECTED, "--data", MEASURED)
+def explorer(emulator_by_stroke):
+    """The shipped projected model, an emulator driven alike, and one that a voltage drives."""
+    running = Explorer(PROJECTED, emulator_by_stroke, OTHER, "--data", MEASURED)
     yield running
     assert running.stop() == 0
 
 
 @pytest.fixture(scope="module")
 def explorer_by_voltage(emulator_by_voltage):
-    running = Explorer(emulator_by_voltage, "--data", MEASURED)
+    running = Explorer(emulator_by_voltage, OTHER, "--data", MEASURED)
     yield running
     assert running.stop() == 0
 
@@ -87,15 +91,65 @@ def test_numbers_are_those_of_hq(explorer, explorer_by_voltage, emulator_by_volt
     assert without_times(json.loads(text)) == without_times(printed)
 
 
-def test_the_model_is_described(explorer, explorer_by_voltage):
-    model = json.loads(explorer.ask("/model")[1])
-    assert model["model"] == "wave_pump_fixed.h5" and str(SOURCE) not in json.dumps(model)
+def test_other_models_answer_by_their_number(explorer, emulator_by_stroke):
+    text = explorer.ask(question(115, 0.5, "30,60") + "&model=1")[1]
+    printed = curve_json(emulator_by_stroke, "--frequency", 115, "--stroke", 0.5, "--head", "30,60")
+    assert without_times(json.loads(text)) == without_times(printed)
+    text = explorer.ask(question(120, 44, "50") + "&model=2")[1]
+    printed = curve_json(OTHER, "--frequency", 120, "--voltage", 44, "--head", "50")
+    assert without_times(json.loads(text)) == without_times(printed)
+
+
+def test_the_first_model_within_a_tolerance_answers(explorer, emulator_by_stroke):
+    """As `hq --tolerance --then`, but for what models are called."""
+    stated = curve_json(emulator_by_stroke, "--frequency", 115, "--stroke", 0.53, "--head", "33,50,58")["points"]
+    tolerance = sorted(p["error_l_per_min"] for p in stated)[1]
+    text = explorer.ask(question(115, 0.53, "33,50,58") + f"&model=1&tolerance={tolerance}")[1]
+    points = json.loads(text)["points"]
+    words = ["--frequency", 115, "--stroke", 0.53, "--head", "33,50,58", "--tolerance", tolerance, "--then", PROJECTED]
+    printed = curve_json(emulator_by_stroke, *words)["points"]
+    assert [p["flow_l_per_min"] for p in points] == [p["flow_l_per_min"] for p in printed]
+    assert {p["tier"] for p in points} == {"model.h5", "wave_pump_fixed.h5"} and all(p["why"] for p in points)
+    assert [p["tier"] == "model.h5" for p in points] == [p["tier"] == "emulator" for p in printed]
+
+
+def test_the_models_are_described(explorer, explorer_by_voltage):
+    all_of_it = json.loads(explorer.ask("/models")[1])
+    model, emulator, other = all_of_it["models"]
+    assert model["model"] == "wave_pump_fixed.h5" and str(SOURCE) not in json.dumps(all_of_it)
     drive = model["ranges"]["drive"]
     assert (drive["name"], drive["unit"]) == ("stroke", "mm")
     assert (drive["low"], drive["high"]) == pytest.approx((0.1, 0.8), rel=1e-12)
-    assert model["measured"][0]["drive"] == 0.53 and len(model["measured"][0]["head_mmHg"]) > 50
-    model = json.loads(explorer_by_voltage.ask("/model")[1])
-    assert model["ranges"]["drive"]["unit"] == "V" and model["measured"][0]["drive"] == 40
+    assert model["fluid"] == {"density_g_per_cm3": 1.0, "viscosity_poise": 0.035} and model["no_period"] == ""
+    assert "not known" in emulator["no_period"] and other["ranges"]["drive"]["unit"] == "V"
+    measured = all_of_it["measured"][0]
+    assert (measured["stroke"], measured["voltage"]) == (0.53, 40) and len(measured["head_mmHg"]) > 50
+
+
+def test_a_period_is_that_of_the_model(explorer):
+    text = explorer.ask("/period?frequency=120&drive=0.53&head=50")[1]
+    answer, period = json.loads(text), undula.load(PROJECTED).period(frequency_Hz=120, stroke_mm=0.53, head_mmHg=50)
+    for name in ("time_s", "outflow_l_per_min", "inflow_l_per_min", "holder_mm", "radius_mm"):
+        assert answer[name] == getattr(period, name).tolist(), name
+    assert answer["membrane_mm"] == period.membrane_mm.tolist() and answer["periodic"] is True
+    point = json.loads(explorer.ask(question(120, 0.53, "50"))[1])["points"][0]
+    flows = answer["outflow_l_per_min"]
+    assert sum(flows) / len(flows) == pytest.approx(point["flow_l_per_min"], rel=1e-12)
+
+
+def test_the_scene_of_a_model_is_moved_to_the_point(explorer, tmp_path):
+    response, text = explorer.ask("/scene?frequency=97.5&drive=0.41&head=33")
+    assert response.status == 200 and "toml" in response.getheader("Content-Type")
+    (tmp_path / "moved.toml").write_bytes(text)
+    profile = SOURCE / "data/profiles/wave_pump_profile.toml"
+    (tmp_path / profile.name).write_bytes(profile.read_bytes())
+    moved = undula.check(tmp_path / "moved.toml")["resolved"]
+    told = undula.load(PROJECTED).provenance["scene"]
+    lost = {line for line in told.splitlines() if line not in moved.splitlines() and "profile =" not in line}
+    assert lost == {"frequency_Hz = 120.0", "stroke_mm = 0.53", "head_mmHg = 50.0"}
+    assert {"frequency_Hz = 97.5", "stroke_mm = 0.41", "head_mmHg = 33.0"} <= set(moved.splitlines())
+    text = explorer.ask("/scene?model=2&frequency=120&drive=44&head=50")[1].decode()
+    assert 'drive = "voltage"' in text and re.search(r"^voltage_V = 44.0$", text, re.MULTILINE)
 
 
 @pytest.mark.parametrize(
@@ -113,6 +167,15 @@ def test_the_model_is_described(explorer, explorer_by_voltage):
         (question(120, 5, "50"), "stays in the box"),
         (question(120, 0.5, "500"), "stays in the box"),
         (question(120, 0.5, "50") + "&frequency=100", "one frequency"),
+        (question(120, 0.5, "50") + "&model=3", "no such model"),
+        (question(120, 0.5, "50") + "&model=-1", "no number of a model"),
+        (question(120, 0.5, "50") + "&model=", "one model"),
+        (question(120, 0.5, "50") + "&tolerance=0", "tolerance"),
+        (question(120, 0.5, "50") + "&tolerance=nan", "no number"),
+        ("/period", "one frequency"),
+        ("/period?frequency=120&drive=0.5&head=500", "stays in the box"),
+        ("/period?model=1&frequency=115&drive=0.5&head=50", "not known"),
+        ("/scene?frequency=120&drive=5&head=50", "stays in the box"),
     ],
 )
 def test_what_is_no_question_is_refused(explorer, path, text):
@@ -124,24 +187,24 @@ def test_what_is_no_question_is_refused(explorer, path, text):
 def test_other_hosts_methods_and_paths_are_refused(explorer):
     port = explorer.port
     for host in ("evil.example", f"evil.example:{port}", "127.0.0.1", f"127.0.0.1:{port + 1}", f"127.0.0.1:{port}.evil.example", ""):
-        response, text = explorer.ask("/model", headers={"Host": host})
+        response, text = explorer.ask("/models", headers={"Host": host})
         assert response.status == 403 and b"ranges" not in text, host
-    two = f"GET /model HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nHost: evil.example\r\n\r\n".encode()
+    two = f"GET /models HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nHost: evil.example\r\n\r\n".encode()
     assert b" 403 " in explorer.send(two, more=True).split(b"\r\n")[0]
-    assert b" 403 " in explorer.send(b"GET /model HTTP/1.0\r\n\r\n", more=True).split(b"\r\n")[0]
-    assert explorer.ask("/model", headers={"Host": f"localhost:{port}"})[0].status == 200
+    assert b" 403 " in explorer.send(b"GET /models HTTP/1.0\r\n\r\n", more=True).split(b"\r\n")[0]
+    assert explorer.ask("/models", headers={"Host": f"localhost:{port}"})[0].status == 200
 
     for method in ("POST", "PUT", "DELETE", "PATCH", "OPTIONS"):
-        response, text = explorer.ask("/model", method)
+        response, text = explorer.ask("/models", method)
         assert response.status == 405 and b"ranges" not in text, method
         # A body is never read: the connection may be cut before the answer is.
-        request = f"{method} /model HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 100\r\n\r\n" + "x" * 100
+        request = f"{method} /models HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 100\r\n\r\n" + "x" * 100
         answer = explorer.send(request.encode())
         assert answer == b"" or b" 405 " in answer.split(b"\r\n")[0], method
-    assert explorer.ask("/model", "HEAD")[0].status == 200
+    assert explorer.ask("/models", "HEAD")[0].status == 200
 
     for path in ("/etc/passwd", "/../etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd", "/data/models/wave_pump_fixed.h5",
-                 "/explore.js/../../x", "/%2e%2e/%2e%2e/etc/passwd", "/curve/", "/model.json", "/." , "/index.html"):  # fmt: skip
+                 "/explore.js/../../x", "/%2e%2e/%2e%2e/etc/passwd", "/curve/", "/models/", "/model", "/." , "/index.html"):  # fmt: skip
         response, text = explorer.ask(path)
         assert response.status == 404 and b"root:" not in text, path
 
@@ -162,7 +225,7 @@ def test_a_thousand_malformed_requests_do_no_harm(explorer):
         elif kind == 2:  # too long
             request = (f"GET /{'a' * chance.randrange(9000, 20000)} HTTP/1.1\r\n{host}\r\n").encode()
         elif kind == 3:  # a body that hides another request
-            inner = f"GET /model HTTP/1.1\r\n{host}\r\n"
+            inner = f"GET /models HTTP/1.1\r\n{host}\r\n"
             request = f"POST /curve HTTP/1.1\r\n{host}Content-Length: {chance.choice([3, 10**9, len(inner)])}\r\n\r\n{inner}".encode()
         else:  # a question with something wrong
             query = "&".join(f"{chance.choice(['frequency', 'drive', 'heads', '%00'])}={chance.choice(['', '1e999', '-1', '%ff', '0:1:-1', '{}'])}" for _ in range(4))
@@ -181,7 +244,7 @@ def test_it_listens_on_this_machine_alone(explorer):
 
 
 def test_answers_say_how_browsers_have_to_treat_them(explorer):
-    for path in ("/", "/explore.js", "/explore.css", "/model"):
+    for path in ("/", "/explore.js", "/explore.css", "/models"):
         response, text = explorer.ask(path)
         assert response.status == 200 and text
         assert "default-src 'self'" in response.getheader("Content-Security-Policy")
@@ -189,7 +252,7 @@ def test_answers_say_how_browsers_have_to_treat_them(explorer):
         assert response.getheader("Access-Control-Allow-Origin") is None
     page = explorer.ask("/")[1].decode()
     assert not re.search(r"https?://", page), "works without network"
-    for file, path in (("index.html", "/"), ("explore.js", "/explore.js"), ("explore.css", "/explore.css")):
+    for file, path in (("index.html", "/"), *((name, f"/{name}") for name in ("explore.js", "charts.js", "period.js", "exports.js", "explore.css"))):
         assert explorer.ask(path)[1] == (SOURCE / "apps/explorer/page" / file).read_bytes()
 
 
@@ -205,6 +268,8 @@ def test_an_emulator_answers_at_once(explorer_by_voltage):
 def test_wrong_calls_are_refused(explorer, tmp_path):
     assert "too long to be explored" in run_undula("explore", SOURCE / "data/scenes/wave_pump_fixed.toml", exit_code=2)[1]
     assert "no such file" in run_undula("explore", tmp_path / "none.h5", exit_code=2)[1]
+    assert "no such file" in run_undula("explore", PROJECTED, tmp_path / "none.h5", exit_code=2)[1]
+    assert "models is required" in run_undula("explore", exit_code=2)[1]
     assert "where:" in run_undula("explore", PROJECTED, "--data", tmp_path / "none.csv", exit_code=2)[1]
     log = run_undula("explore", PROJECTED, "--port", explorer.port, exit_code=2)[1]
     assert "port cannot be served" in log and str(explorer.port) in log
@@ -228,7 +293,7 @@ def browser():
 
 def rows_of(browser):
     script = """return [...document.querySelectorAll("#numbers tbody tr")].map(
-        (row) => [...row.cells].map((cell) => Number(cell.dataset.value)))"""
+        (row) => [...row.cells].slice(0, 3).map((cell) => Number(cell.dataset.value)))"""
     return browser.execute_script(script)
 
 
@@ -284,15 +349,19 @@ def test_the_page_shows_the_numbers_of_hq(browser, explorer_by_voltage, emulator
     rows_when(browser, lambda rows: rows == expected)
     assert browser.find_element(By.ID, "error").text == ""
 
-    # 4. What is drawn, and for whom does not see it.
+    # 4. What is drawn, and for whom does not see it. The page is done once the other model stands beside the curve.
+    when(browser, WHOLE)
+    when(browser, 'return document.querySelectorAll("#chart polyline").length === 2')
     assert len(browser.find_elements(By.CSS_SELECTOR, "#chart polygon.band")) == 1
-    line = browser.find_element(By.CSS_SELECTOR, "#chart polyline.curve").get_attribute("points")
+    line = browser.find_element(By.CSS_SELECTOR, "#chart polyline.curve:not(.beside-1)").get_attribute("points")
     assert len(line.split()) == 25
     samples = len(undula.read_measured(MEASURED))
     assert len(browser.find_elements(By.CSS_SELECTOR, "#chart circle.sample.other")) == samples
-    for control in browser.find_elements(By.CSS_SELECTOR, "input"):
-        name = control.get_attribute("id")
-        assert browser.find_element(By.CSS_SELECTOR, f"label[for={name}]").text
+    for control in browser.find_elements(By.CSS_SELECTOR, "input, select, button"):
+        if control.is_displayed():
+            assert control.accessible_name, control.get_attribute("id")
+    for picture in browser.find_elements(By.CSS_SELECTOR, "svg"):
+        assert not picture.is_displayed() or picture.accessible_name
     refused = [entry for entry in browser.get_log("browser") if "400" not in entry["message"]]
     assert refused == []
 
@@ -307,3 +376,143 @@ def test_the_page_fits_any_window(browser, explorer, width):
     rows_when(browser, lambda rows: len(rows) == 25)
     assert browser.execute_script("return document.documentElement.scrollWidth") <= width
     browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def when(browser, script, *arguments):
+    """What a script returns, once it is true."""
+    until = time.monotonic() + 20
+    while time.monotonic() < until:
+        if found := browser.execute_script(script, *arguments):
+            return found
+        time.sleep(0.02)
+    raise AssertionError(f"never true: {script}")
+
+
+WHOLE = 'return document.querySelectorAll("#numbers tbody tr").length === 25 && document.querySelectorAll("#point dd").length > 5'
+
+
+def line_of(browser, selector):
+    return browser.find_element("css selector", selector).get_attribute("points")
+
+
+def test_the_membrane_moves_as_the_period_says(browser, explorer):
+    from selenium.webdriver.common.keys import Keys
+
+    browser.get("about:blank")
+    browser.get(explorer.url + "#frequency=120&drive=0.53&head=50")
+    when(browser, WHOLE)
+    when(browser, 'return !document.getElementById("period").hidden')
+    # 1. It plays by itself, and stops.
+    play = browser.find_element("id", "play")
+    assert play.text == "Pause" and play.get_attribute("aria-pressed") == "true"
+    before = line_of(browser, "#membrane-chart polyline.curve")
+    when(browser, 'return document.querySelector("#membrane-chart polyline.curve").getAttribute("points") !== arguments[0]', before)
+    play.click()
+    assert play.text == "Play"
+    still = line_of(browser, "#membrane-chart polyline.curve")
+    time.sleep(0.3)
+    assert line_of(browser, "#membrane-chart polyline.curve") == still
+
+    # 2. The instant by keys: the line is the membrane of the model there, in the scale that the envelope tells.
+    slider = browser.find_element("id", "instant")
+    slider.send_keys(Keys.HOME)
+    slider.send_keys(Keys.ARROW_RIGHT * 20)
+    period = undula.load(PROJECTED).period(frequency_Hz=120, stroke_mm=0.53, head_mmHg=50)
+    assert browser.find_element("id", "instant-value").text.startswith("%.4g ms" % (1e3 * period.time_s[20]))
+    points = [tuple(map(float, pair.split(","))) for pair in line_of(browser, "#membrane-chart polyline.curve").split()]
+    reach = [float(pair.split(",")[1]) for pair in line_of(browser, "#membrane-chart polygon.band").split()]
+    low, high = period.membrane_mm.min(), period.membrane_mm.max()
+    scale = (max(reach) - min(reach)) / (high - low)
+    expected = [max(reach) - scale * (value - low) for value in period.membrane_mm[:, 20]]
+    assert [y for _, y in points] == pytest.approx(expected, abs=1e-6)
+    outflow = line_of(browser, "#flow-chart polyline.curve:not(.beside-1)").split()
+    assert len(outflow) == len(period.time_s)
+    said = browser.find_element("id", "flow-summary").text
+    assert "%.4g and %.4g l/min" % (period.outflow_l_per_min.min(), period.outflow_l_per_min.max()) in said
+
+    # 3. Numbers at the head are those of the model; what it does not know is said.
+    rows = browser.execute_script('return Object.fromEntries([...document.querySelectorAll("#point dt")].map((t) => [t.textContent, t.nextSibling.dataset.value ?? t.nextSibling.textContent]))')
+    curve = undula.load(PROJECTED).curve(frequency_Hz=120, stroke_mm=0.53, heads_mmHg=50)
+    assert float(rows["flow (l/min)"]) == curve.flow_l_per_min[0]
+    assert float(rows["hydraulic power (mW)"]) == curve.hydraulic_power_mW[0]
+    assert rows["stroke of the holder (mm)"] == "0.53, imposed" and rows["efficiency (%)"] == "not known"
+    assert "0.035 poise" in browser.find_element("id", "fluid").text and "no slider" in browser.find_element("id", "fluid").text
+    # 4. It was shown by a few heads first.
+    assert re.match(r"reduced model: 5 points after \d+ ms, 25 points after \d+ ms", browser.find_element("id", "status").text)
+
+
+def test_an_emulator_says_that_it_knows_no_period(browser, explorer_by_voltage):
+    browser.get("about:blank")
+    browser.get(explorer_by_voltage.url + "#quantity=blood.scalar_stress_max_Pa&drive=45")
+    when(browser, WHOLE)
+    said = when(browser, 'const p = document.getElementById("no-period"); return !p.hidden && p.textContent')
+    assert "not known" in said and not browser.find_element("id", "period").is_displayed()
+    assert "does not know: greatest shear stress" in browser.find_element("id", "quantity-summary").text
+    select = browser.find_element("id", "quantity")
+    select.send_keys("efficiency")
+    said = when(browser, 'const t = document.getElementById("quantity-summary").textContent; return t.startsWith("efficiency") && t')
+    assert "quantity=holder.efficiency_percent" in browser.current_url and re.search(r"efficiency \(%\): [0-9.]+ at 0 mmHg", said)
+
+
+def test_other_models_are_drawn_beside(browser, explorer, emulator_by_stroke):
+    browser.get("about:blank")
+    browser.get(explorer.url + "#frequency=115&drive=0.5&head=45")
+    when(browser, WHOLE)
+    when(browser, 'return document.querySelectorAll("#chart polyline.beside-1").length === 1')
+    boxes = browser.find_elements("css selector", "#other-list input")
+    assert [box.is_enabled() for box in boxes] == [True, False]
+    assert "driven by a voltage" in browser.find_element("id", "why-2").text
+    assert "model.h5, emulator" in browser.find_element("id", "key").text
+    # Outside of its box it is not drawn, and that is said; unticked neither. The link restores it.
+    boxes[0].click()
+    when(browser, 'return document.querySelectorAll("#chart polyline.beside-1").length === 0')
+    browser.refresh()
+    when(browser, WHOLE)
+    assert not browser.find_element("css selector", "#other-list input").is_selected()
+    browser.get("about:blank")
+    browser.get(explorer.url + "#frequency=90&drive=0.5")
+    when(browser, WHOLE)
+    when(browser, 'return document.getElementById("why-1").textContent.includes("outside of its box")')
+
+    # The first model within a tolerance: which one answered stands in the table.
+    browser.get("about:blank")
+    browser.get(explorer.url + "#model=1&frequency=115&drive=0.53&low=30&high=60&tolerance=0.01")
+    when(browser, WHOLE)
+    titles = [cell.text for cell in browser.find_elements("css selector", "#numbers th")]
+    assert titles[-2:] == ["answered by", "because"]
+    tiers = {row.split("\t")[0] for row in browser.execute_script('return [...document.querySelectorAll("#numbers tbody tr")].map((r) => r.cells[r.cells.length - 2].textContent)')}
+    assert tiers <= {"model.h5", "wave_pump_fixed.h5"} and "wave_pump_fixed.h5" in tiers
+
+
+def test_numbers_picture_and_scene_are_saved(browser, explorer_by_voltage, emulator_by_voltage, tmp_path):
+    browser.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)})
+    browser.get("about:blank")
+    browser.get(explorer_by_voltage.url + "#frequency=120&drive=40&low=20&high=68&head=44")
+    when(browser, WHOLE)
+
+    def saved(button, ending):
+        browser.find_element("id", button).click()
+        until = time.monotonic() + 20
+        while time.monotonic() < until:
+            if found := [file for file in tmp_path.glob(f"*{ending}") if file.stat().st_size > 0]:
+                return found[0]
+            time.sleep(0.05)
+        raise AssertionError(browser.find_element("id", "saved").text)
+
+    table = undula.read_table(saved("save-csv", ".csv"))
+    points = curve_json(emulator_by_voltage, "--frequency", 120, "--voltage", 40, "--head", "20:68:2")["points"]
+    assert list(table["flow_l_per_min"]) == [p["flow_l_per_min"] for p in points]
+    assert list(table["holder.stroke_mm"]) == [p["holder"]["stroke_mm"] for p in points]
+    from matplotlib import image
+
+    picture = image.imread(saved("save-png", ".png"))
+    assert picture.shape[:2] == (940, 1280)
+    colours = {tuple(pixel) for pixel in (picture[::2, ::2, :3] * 255).astype(int).reshape(-1, 3).tolist()}
+    assert (31, 95, 168) in colours and (179, 64, 30) in colours  # the line of the curve and the samples of the style sheet
+    scene = saved("save-scene", ".toml")
+    assert scene.name == "model_120Hz_40V_44mmHg.toml"
+    assert "voltage_V = 40.0" in scene.read_text() and "head_mmHg = 44.0" in scene.read_text()
+    (tmp_path / "wave_pump_profile.toml").write_bytes((SOURCE / "data/profiles/wave_pump_profile.toml").read_bytes())
+    with pytest.warns(undula.RunWarning):  # the profile states another modulus than the calibrated scene
+        (curve,) = undula.hq(scene)
+    assert curve.voltage_V == 40

@@ -93,6 +93,12 @@ def test_everything_public_has_a_docstring_and_arrays_name_their_unit():
             assert unit in getattr(undula.Curve, name).__doc__, name
 
 
+def test_the_reference_is_that_of_the_docstrings():
+    from undula import reference
+
+    assert (SOURCE / "docs/python_reference.md").read_text() == reference.page()
+
+
 def run_example(name, *words, folder):
     script = SOURCE / "apps/python/examples" / name
     done = subprocess.run(
@@ -107,6 +113,28 @@ def test_example_hq_curve(tmp_path, emulator_by_voltage):
     rms = float(re.search(r"rms ([0-9.]+) l/min", printed).group(1))
     assert rms < 0.2  # the scene is calibrated to these data
     assert (tmp_path / "hq.png").stat().st_size > 10_000
+
+
+def test_example_calibrate(tmp_path):
+    scene, other = SOURCE / "data/scenes/wave_pump_bench.toml", SOURCE / "data/measured/corwave_120hz_0.63mm.csv"
+    printed = run_example("calibrate.py", scene, MEASURED, other, "fitted.toml", "actuator.force_N_per_V=0.3:0.55", folder=tmp_path)
+    force = float(re.search(r"force_N_per_V = ([0-9.]+)", printed).group(1))
+    assert 0.4 < force < 0.48  # 0.42 of both curves with all inputs free: docs/drive.md
+    rows = {line.split()[0]: list(map(float, line.split()[1:])) for line in printed.splitlines() if line.startswith(("fitted", "predicted"))}
+    for before, after, scatter in rows.values():
+        assert after < 0.3 * before and after < 2 * scatter
+    assert (tmp_path / "fitted.toml").exists() and (tmp_path / "fitted.png").stat().st_size > 10_000
+
+
+def test_example_speed_error(tmp_path):
+    scene = SOURCE / "data/scenes/wave_pump_thin_gap.toml"
+    printed = run_example("speed_error.py", MEASURED, "speed.png", scene, "thin_gap.cells=32,64,128", PROJECTED, folder=tmp_path)
+    rows = {line[:56].strip(): line[56:].split() for line in printed.splitlines()[1:]}
+    errors = [float(rows[f"thin gap, wave_pump_thin_gap.toml, thin_gap.cells={n}"][2]) for n in (32, 64)]
+    assert errors[0] > errors[1] > 0 and len(rows) == 5
+    seconds = [float(row[0]) for row in rows.values()]
+    assert seconds[-1] < min(seconds[:-1])  # the reduced model is the fastest
+    assert (tmp_path / "speed.png").stat().st_size > 10_000
 
 
 def windkessel():

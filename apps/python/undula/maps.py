@@ -8,7 +8,8 @@ from typing import Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from undula._rom import Emulator, InputError, ReducedModel
+from undula._rom import Emulator, ReducedModel
+from undula.errors import refused
 
 
 @dataclass(frozen=True)
@@ -41,12 +42,8 @@ def flow_map(
     Raises and warns as model.curve.
     """
     if (strokes_mm is None) == (voltages_V is None):
-        raise InputError(
-            "the drive of a map is not stated\n"
-            f"  seen:    {'neither' if strokes_mm is None else 'both'} of strokes_mm and voltages_V\n"
-            "  allowed: one of them\n"
-            "  where:   flow_map"
-        )
+        seen = f"{'neither' if strokes_mm is None else 'both'} of strokes_mm and voltages_V"
+        raise refused("the drive of a map is not stated", seen, "one of them", "flow_map")
     frequencies = np.atleast_1d(np.asarray(frequencies_Hz, dtype=float))
     heads = np.atleast_1d(np.asarray(heads_mmHg, dtype=float))
     by_stroke = strokes_mm is not None

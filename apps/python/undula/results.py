@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Dict, List, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from undula._rom import InputError
+from undula.errors import refused
 
 PathLike = Union[str, "os.PathLike[str]"]
 Column = Union[npt.NDArray[np.float64], List[str]]
@@ -22,7 +22,8 @@ class RecordedCurve:
     """A curve as `undula hq --json` printed it: of a model or of a scene, whatever level computed it.
 
     columns holds every number of the points by its name in the file ("flow_l_per_min", "holder.stroke_mm"), one
-    entry per head; nan where the file has null. Names carry the unit.
+    entry per head; nan where the file has null. Names carry the unit. texts holds what is said of every point:
+    "reason", why it is not periodic; "tier" and "why", which of several levels answered.
     """
 
     level: str
@@ -31,6 +32,7 @@ class RecordedCurve:
     stroke_mm: Optional[float]
     voltage_V: Optional[float]
     columns: Dict[str, npt.NDArray[np.float64]]
+    texts: Dict[str, List[str]] = field(default_factory=dict)
 
     @property
     def head_mmHg(self) -> npt.NDArray[np.float64]:
@@ -54,16 +56,12 @@ class RecordedCurve:
         return np.full(len(self.head_mmHg), True) if inside is None else np.equal(inside, 1)
 
 
-def _refuse(what: str, seen: str, allowed: str, where: str) -> InputError:
-    return InputError(f"{what}\n  seen:    {seen}\n  allowed: {allowed}\n  where:   {where}")
-
-
 def _read_text(file: PathLike) -> str:
     try:
         with open(file, encoding="utf-8") as stream:
             return stream.read()
     except (OSError, UnicodeDecodeError) as error:
-        raise _refuse("the file cannot be read", str(error), "a text file that Undula wrote", str(file)) from None
+        raise refused("the file cannot be read", str(error), "a text file that Undula wrote", str(file)) from None
 
 
 def _numbers(point: Dict[str, Any], prefix: str = "") -> Dict[str, float]:
@@ -85,6 +83,11 @@ def _curve(record: Dict[str, Any]) -> RecordedCurve:
     columns = {name: np.array([point.get(name, float("nan")) for point in points]) for name in names}
     for name in ("head_mmHg", "flow_l_per_min", "error_l_per_min"):
         columns[name]  # KeyError: no curve
+    texts = {
+        name: [str(point.get(name, "")) for point in record["points"]]
+        for name in ("reason", "tier", "why")
+        if any(name in point for point in record["points"])
+    }
     return RecordedCurve(
         record["level"],
         record["model"] if "model" in record else record["scene"],
@@ -92,7 +95,13 @@ def _curve(record: Dict[str, Any]) -> RecordedCurve:
         record.get("stroke_mm"),
         record.get("voltage_V"),
         columns,
+        texts,
     )
+
+
+def curves_of(record: Dict[str, Any]) -> List[RecordedCurve]:
+    """Curves of what `undula hq --json` printed, read already."""
+    return [_curve(one) for one in record.get("curves", [record])]
 
 
 def read_curves(file: PathLike) -> List[RecordedCurve]:
@@ -102,12 +111,11 @@ def read_curves(file: PathLike) -> List[RecordedCurve]:
     """
     allowed = "what `undula hq ... --json` prints"
     try:
-        record = json.loads(_read_text(file))
-        return [_curve(one) for one in record.get("curves", [record])]
+        return curves_of(json.loads(_read_text(file)))
     except json.JSONDecodeError as error:
-        raise _refuse("the file is no JSON", str(error), allowed, str(file)) from None
+        raise refused("the file is no JSON", str(error), allowed, str(file)) from None
     except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise _refuse("the file holds no curve", f"{type(error).__name__}: {error}", allowed, str(file)) from None
+        raise refused("the file holds no curve", f"{type(error).__name__}: {error}", allowed, str(file)) from None
 
 
 def read_table(file: PathLike) -> Dict[str, Column]:
@@ -119,12 +127,12 @@ def read_table(file: PathLike) -> Dict[str, Column]:
     lines = _read_text(file).splitlines()
     start = next((i for i, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
     if start is None:
-        raise _refuse("the table is empty", f"{len(lines)} lines, no header", "a table with a header", str(file))
+        raise refused("the table is empty", f"{len(lines)} lines, no header", "a table with a header", str(file))
     rows = list(csv.reader(lines[start:]))
     header = rows[0]
     for number, row in enumerate(rows[1:], start + 2):
         if len(row) != len(header):
-            raise _refuse(
+            raise refused(
                 "a row of the table is not whole", f"{len(row)} fields", f"{len(header)}, as in the header", f"{file}:{number}"
             )
     table: Dict[str, Column] = {}
@@ -135,3 +143,18 @@ def read_table(file: PathLike) -> Dict[str, Column]:
         except ValueError:
             table[name] = fields
     return table
+
+
+def read_report(file: PathLike) -> Dict[str, Any]:
+    """Reads what a command printed by --json, or a study's study.json: names carry the units, null is None.
+
+    Raises InputError for another file.
+    """
+    allowed = "what a command of undula prints by --json"
+    try:
+        report = json.loads(_read_text(file))
+    except json.JSONDecodeError as error:
+        raise refused("the file is no JSON", str(error), allowed, str(file)) from None
+    if not isinstance(report, dict):
+        raise refused("the file holds no report", type(report).__name__, allowed, str(file))
+    return report

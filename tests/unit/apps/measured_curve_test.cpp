@@ -186,6 +186,10 @@ TEST(Progress, TheLineEstimatesTheTimeLeft) {
   EXPECT_EQ(progress_line("solve", 1, 3, 60), "solve  33 %  1/3  2:00 left");
   EXPECT_EQ(progress_line("solve", 1, 100, 60), "solve  1 %  1/100  1:39:00 left");
   EXPECT_EQ(progress_line("solve", 3, 3, 60), "solve  100 %  3/3");
+  EXPECT_EQ(progress_json("a \"b\"", 1, 3, 60),
+            R"({"progress":"a \"b\"","done":1,"total":3,"seconds_left":120})");
+  EXPECT_EQ(progress_json("solve", 3, 3, 60),
+            R"({"progress":"solve","done":3,"total":3,"seconds_left":null})");
 }
 
 TEST(TextTable, ColumnsAreAligned) {
