@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/model_file_parts.hpp"
 #include "rom/emulator/emulator.hpp"
@@ -10,8 +11,7 @@
 namespace undula::rom {
 namespace {
 
-constexpr const char* file_kind = "undula emulator";
-constexpr int file_version = 1;
+constexpr FileFormat file_format{"undula emulator", "an emulator", 1};
 constexpr int most_quantities = 1000;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -134,8 +134,7 @@ std::string group_of(std::size_t quantity) { return "quantities/" + std::to_stri
 void save_emulator(const Emulator& emulator, const std::string& name) {
   check_meaning(emulator, name);
   auto file = Hdf5File::create(name);
-  file.write_attribute("/", "kind", file_kind);
-  file.write_attribute("/", "format_version", file_version);
+  write_format_version(file, file_format);
   file.write_attribute("/", "driven_by_voltage", emulator.driven_by_voltage ? 1 : 0);
   for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
     const auto& input = emulator.inputs[i];
@@ -152,14 +151,13 @@ void save_emulator(const Emulator& emulator, const std::string& name) {
   file.commit();
 }
 
-bool holds_emulator(const std::string& name) { return kind_of(Hdf5File::open_unchecked(name)) == file_kind; }
+bool holds_emulator(const std::string& name) {
+  return kind_of(Hdf5File::open_unchecked(name)) == file_format.kind;
+}
 
 Emulator load_emulator(const std::string& name) {
   const auto file = Hdf5File::open_sealed(name);
-  check_kind(file, file_kind, "not an emulator");
-  if (const int version = file.read_attribute<int>("/", "format_version"); version != file_version)
-    throw InputError("emulator file of another format version", std::to_string(version),
-                     std::to_string(file_version), name);
+  checked_version(file, file_format);
   Emulator emulator;
   emulator.driven_by_voltage = file.read_attribute<int>("/", "driven_by_voltage") != 0;
   for (std::size_t i = 0; i < emulator.inputs.size(); ++i) {
