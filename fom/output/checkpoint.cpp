@@ -5,12 +5,12 @@
 #include <system_error>
 
 #include "rom/base/error.hpp"
-#include "rom/base/hdf5_file.hpp"
+#include "rom/base/file_format.hpp"
 
 namespace undula::fom {
 namespace {
 
-constexpr const char* format = "undula checkpoint 2";
+constexpr FileFormat file_format{"undula checkpoint", "a checkpoint", 2};
 constexpr std::string_view prefix = "checkpoint_", suffix = ".h5";
 constexpr std::size_t kept = 2;
 
@@ -50,7 +50,7 @@ std::filesystem::path save_checkpoint(const Checkpoint& state, const std::filesy
                         "free space on the disk; a name that is not taken by a file");
   const auto target = folder / (std::string(prefix) + std::to_string(state.step) + std::string(suffix));
   auto file = Hdf5File::create(target);
-  file.write_attribute("/", "format", format);
+  file.write_attribute("/", "format", format_text(file_format));
   file.write_attribute("/", "step", state.step);
   file.write_attribute("/", "time", state.time);
   file.write_attribute("/", "scene_hash", state.scene.hash);
@@ -66,9 +66,7 @@ std::filesystem::path save_checkpoint(const Checkpoint& state, const std::filesy
 
 Checkpoint load_checkpoint(const std::filesystem::path& path, const SceneStamp& scene) {
   const auto file = Hdf5File::open_sealed(path);
-  const auto seen =
-      file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
-  if (seen != format) throw InputError("not a checkpoint", "format: " + seen, format, path.string());
+  checked_version(file, file_format);
   Checkpoint state;
   state.scene = {file.read_attribute<std::string>("/", "scene_hash"), file.read_text("scene")};
   if (state.scene.hash != scene.hash)

@@ -6,13 +6,13 @@
 #include <set>
 
 #include "rom/base/error.hpp"
-#include "rom/base/hdf5_file.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/replaced_file.hpp"
 
 namespace undula::fom {
 namespace {
 
-constexpr const char* format = "undula fields 1";
+constexpr FileFormat file_format{"undula fields", "a file of fields", 1};
 constexpr std::chrono::seconds index_interval{1};
 
 void check_name(const std::string& name, const std::string& where) {
@@ -22,7 +22,7 @@ void check_name(const std::string& name, const std::string& where) {
 }
 
 void write_header(Hdf5File& file, const std::map<std::string, std::string>& provenance) {
-  file.write_attribute("/", "format", format);
+  file.write_attribute("/", "format", format_text(file_format));
   file.create_group("provenance");
   for (const auto& [key, text] : provenance) file.write_text("provenance/" + key, text);
 }
@@ -177,6 +177,7 @@ std::map<int, std::filesystem::path> FieldWriter<dim>::step_files() const {
 template <int dim>
 XdmfStep FieldWriter<dim>::read_step(const std::filesystem::path& path) const {
   const auto file = Hdf5File::open_unchecked(path); // fields may be large, and no state is read from them
+  checked_version(file, file_format);
   XdmfStep entry{file.read_attribute<int>("/", "step"),
                  file.read_attribute<double>("/", "time"),
                  path.filename().string(),

@@ -12,6 +12,7 @@
 #include "fom/scene/scene_file.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 
@@ -199,6 +200,8 @@ void RunDirectory::go_on_from_checkpoint(State& state) {
                          file.string());
       state = state_of(load_checkpoint(file, stamp_), state, file);
       return saved(step, file);
+    } catch (const LaterFormatError&) {
+      throw; // whole, and going on from an older one would remove it
     } catch (const InputError& error) {
       damaged_.emplace_back(error.what());
     }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/model_file_parts.hpp"
 #include "rom/emulator/emulator.hpp"
@@ -10,9 +11,8 @@
 namespace undula::rom {
 namespace {
 
-constexpr const char* file_kind = "undula emulator";
-constexpr int file_version = 2;
-constexpr int version_of_three_inputs = 1; // frequency, drive and head alone; no force
+constexpr int version_of_three_inputs = 1; // frequency, drive and head alone; no force, no responses
+constexpr FileFormat file_format{"undula emulator", "an emulator", 2, version_of_three_inputs};
 constexpr int most_inputs = 100;
 constexpr int most_quantities = 1000;
 
@@ -202,8 +202,7 @@ std::string response_group(std::size_t response) { return "responses/" + std::to
 void save_emulator(const Emulator& emulator, const std::string& name) {
   check_meaning(emulator, name);
   auto file = Hdf5File::create(name);
-  file.write_attribute("/", "kind", file_kind);
-  file.write_attribute("/", "format_version", file_version);
+  write_format_version(file, file_format);
   file.write_attribute("/", "driven_by_voltage", emulator.driven_by_voltage ? 1 : 0);
   file.write_attribute("/", "force_N_per_V", emulator.force_N_per_V);
   file.create_group("inputs");
@@ -228,16 +227,13 @@ void save_emulator(const Emulator& emulator, const std::string& name) {
   file.commit();
 }
 
-bool holds_emulator(const std::string& name) { return kind_of(Hdf5File::open_unchecked(name)) == file_kind; }
+bool holds_emulator(const std::string& name) {
+  return kind_of(Hdf5File::open_unchecked(name)) == file_format.kind;
+}
 
 Emulator load_emulator(const std::string& name) {
   const auto file = Hdf5File::open_sealed(name);
-  check_kind(file, file_kind, "not an emulator");
-  const int version = file.read_attribute<int>("/", "format_version");
-  if (version != file_version && version != version_of_three_inputs)
-    throw InputError("emulator file of another format version", std::to_string(version),
-                     std::to_string(version_of_three_inputs) + " or " + std::to_string(file_version), name);
-  const bool further = version != version_of_three_inputs;
+  const bool further = checked_version(file, file_format) != version_of_three_inputs;
   Emulator emulator;
   emulator.driven_by_voltage = file.read_attribute<int>("/", "driven_by_voltage") != 0;
   if (further) emulator.force_N_per_V = file.read_attribute<double>("/", "force_N_per_V");

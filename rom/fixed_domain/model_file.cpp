@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/model_file_parts.hpp"
 #include "rom/fixed_domain/model.hpp"
@@ -10,10 +11,9 @@
 namespace undula::rom {
 namespace {
 
-constexpr const char* file_kind = "undula reduced model";
-constexpr int file_version = 2;
 constexpr int unsealed_version = 1; // the same without seal
-constexpr int most_modes = 100000;  // of a field; keeps sums and products of sizes far from overflow
+constexpr FileFormat file_format{"undula reduced model", "a reduced model", 2, unsealed_version};
+constexpr int most_modes = 100000; // of a field; keeps sums and products of sizes far from overflow
 
 using Shape = Hdf5File::Shape;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -208,14 +208,9 @@ void check_meaning(const Model& model, const std::string& file) {
 }
 
 /// Returns the version of the format.
-int checked_version(const Hdf5File& file) {
-  check_kind(file, file_kind, "not a reduced model");
-  const int version = file.read_attribute<int>("/", "format_version");
-  if (version != file_version && version != unsealed_version)
-    throw InputError("model file of another format version", std::to_string(version),
-                     std::to_string(unsealed_version) + " or " + std::to_string(file_version),
-                     file.path().string());
-  if (version == file_version && !file.sealed())
+int version_of(const Hdf5File& file) {
+  const int version = checked_version(file, file_format);
+  if (version != unsealed_version && !file.sealed())
     throw InputError("the model file has lost its seal", "a file that does not begin with one",
                      "an undamaged copy; other programs may read model files but not write them",
                      file.path().string());
@@ -227,8 +222,7 @@ int checked_version(const Hdf5File& file) {
 void save_model(const Model& model, const std::string& name) {
   check_meaning(model, name);
   auto file = Hdf5File::create(name);
-  file.write_attribute("/", "kind", file_kind);
-  file.write_attribute("/", "format_version", file_version);
+  write_format_version(file, file_format);
   const auto& o = model.operators;
   file.create_group("operators");
   file.write_attribute("operators", "velocity_modes", o.velocity_modes);
@@ -251,7 +245,7 @@ void save_model(const Model& model, const std::string& name) {
 Model load_model(const std::string& name) {
   const auto file = Hdf5File::open_read(name);
   Model model;
-  model.sealed = checked_version(file) != unsealed_version;
+  model.sealed = version_of(file) != unsealed_version;
   auto& o = model.operators;
   o.velocity_modes = read_count(file, "operators", "velocity_modes", 1);
   o.supremizer_modes = read_count(file, "operators", "supremizer_modes", 0);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/model_file_parts.hpp"
 #include "rom/moving_domain/moving_model.hpp"
@@ -10,8 +11,7 @@
 namespace undula::rom {
 namespace {
 
-constexpr const char* file_kind = "undula moving-domain model";
-constexpr int file_version = 1;
+constexpr FileFormat file_format{"undula moving-domain model", "a model of a moving domain", 1};
 
 struct RangeEntry {
   const char* name;
@@ -89,13 +89,12 @@ std::vector<double> read_weights(const Hdf5File& file, const std::string& group)
 } // namespace
 
 bool holds_moving_model(const std::string& name) {
-  return std::filesystem::exists(name) && kind_of(Hdf5File::open_unchecked(name)) == file_kind;
+  return std::filesystem::exists(name) && kind_of(Hdf5File::open_unchecked(name)) == file_format.kind;
 }
 
 void save_moving_model(const MovingModel& model, const std::string& name) {
   auto file = Hdf5File::create(name);
-  file.write_attribute("/", "kind", file_kind);
-  file.write_attribute("/", "format_version", file_version);
+  write_format_version(file, file_format);
   file.write_text("scene", model.scene);
   file.write_text("profile", model.profile);
   const auto rows = static_cast<std::size_t>(model.basis.rows()),
@@ -124,10 +123,7 @@ void save_moving_model(const MovingModel& model, const std::string& name) {
 
 MovingModel load_moving_model(const std::string& name) {
   const auto file = Hdf5File::open_sealed(name);
-  check_kind(file, file_kind, "not a model of a moving domain");
-  if (const int version = file.read_attribute<int>("/", "format_version"); version != file_version)
-    throw InputError("model of a moving domain in another format version", std::to_string(version),
-                     std::to_string(file_version), name);
+  checked_version(file, file_format);
   MovingModel model;
   model.scene = file.read_text("scene");
   model.profile = file.read_text("profile");

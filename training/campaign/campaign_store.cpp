@@ -4,6 +4,7 @@
 
 #include "fom/output/scene_difference.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/text_file.hpp"
 #include "training/campaign/run_record_file.hpp"
 #include "training/sampling/trainable_scene.hpp"
@@ -11,7 +12,7 @@
 namespace undula::training {
 namespace {
 
-constexpr const char* format = "undula campaign 2";
+constexpr FileFormat format{"undula campaign", "a campaign", 2};
 /// Which keys of the scenes of two campaigns differ, of those that may matter.
 std::string difference(const std::string& before, const std::string& now) {
   auto keys = differing_keys(before, now);
@@ -107,6 +108,8 @@ std::vector<OperatingPoint> CampaignStore::recorded_points(std::vector<std::stri
       const auto point = point_of_record(file, records_.hash());
       check_run_record(file, records_.hash(), point);
       points.push_back(point);
+    } catch (const LaterFormatError&) {
+      throw; // not damaged
     } catch (const InputError& error) {
       damaged.emplace_back(error.what());
     }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "rom/base/error.hpp"
-#include "rom/base/hdf5_file.hpp"
+#include "rom/base/file_format.hpp"
 
 namespace undula::training {
 namespace {
@@ -63,10 +63,7 @@ RecordStore::RecordStore(const std::filesystem::path& folder, RecordKind kind, S
 
 void RecordStore::check_stamp(const std::filesystem::path& path) const {
   const auto stamp = Hdf5File::open_sealed(path);
-  const auto seen =
-      stamp.has_attribute("/", "format") ? stamp.read_attribute<std::string>("/", "format") : "none";
-  if (seen != kind_.format)
-    throw InputError("not a " + kind_.noun, "format: " + seen, kind_.format, path.string());
+  checked_version(stamp, kind_.format);
   const auto hash = stamp.read_attribute<std::string>("/", kind_.noun + "_hash");
   if (hash != stamp_.hash)
     throw InputError(
@@ -89,7 +86,7 @@ void RecordStore::check_or_create_stamp() const {
   const RecordClaim guard(lock(lock_file(path), Wait::yes, kind_.noun), {});
   if (std::filesystem::exists(path)) return check_stamp(path);
   auto stamp = Hdf5File::create(path);
-  stamp.write_attribute("/", "format", kind_.format);
+  stamp.write_attribute("/", "format", format_text(kind_.format));
   stamp.write_attribute("/", kind_.noun + "_hash", stamp_.hash);
   stamp.write_text("scene", stamp_.text);
   stamp.commit();
@@ -124,6 +121,8 @@ bool RecordStore::is_done(const std::string& name, const Check& check,
     check(record);
     checked_[record] = changed;
     return true;
+  } catch (const LaterFormatError&) {
+    throw; // not damaged: it would be replaced
   } catch (const InputError& error) {
     if (damaged != nullptr) damaged->emplace_back(error.what());
     return false;

@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "fom/output/scene_stamp.hpp"
+#include "rom/base/file_format.hpp"
 #include "training/training.hpp"
 
 namespace undula::training {
 
 /// What a folder of records is called and how its stamp is written.
 struct RecordKind {
-  std::string noun;   ///< "campaign"; the stamp is noun.h5, its hash the attribute noun_hash
-  std::string format; ///< attribute of the stamp
+  std::string noun;  ///< "campaign"; the stamp is noun.h5, its hash the attribute noun_hash
+  FileFormat format; ///< of the stamp
   /// Which keys of two stamped scenes differ, of those that may matter.
   std::function<std::string(const std::string& before, const std::string& now)> difference;
 };
@@ -51,7 +52,7 @@ public:
   using Check = std::function<void(const std::filesystem::path&)>;
 
   /// Whether the record is there and whole; each is read through once. What is wrong with a damaged one is
-  /// appended to `damaged`.
+  /// appended to `damaged`; LaterFormatError for one of a later version.
   bool is_done(const std::string& name, const Check& check,
                std::vector<std::string>* damaged = nullptr) const;
 

@@ -5,13 +5,14 @@
 #include <utility>
 
 #include "rom/base/error.hpp"
-#include "rom/base/hdf5_file.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/text_file.hpp"
 
 namespace undula::training {
 namespace {
 
-constexpr const char* format = "undula run record 2";
+constexpr int version_without_varied_keys = 2; // training.vary
+constexpr FileFormat file_format{"undula run record", "a run record", 3, version_without_varied_keys};
 
 constexpr std::array<std::pair<RunState, const char*>, 4> state_names{
     {{RunState::periodic, "periodic"},
@@ -57,9 +58,7 @@ std::string point_text(const OperatingPoint& point) {
 
 Hdf5File open_of_campaign(const std::filesystem::path& path, const std::string& campaign_hash) {
   auto file = Hdf5File::open_sealed(path);
-  const auto seen =
-      file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
-  if (seen != format) throw InputError("not a run record", "format: " + seen, format, path.string());
+  checked_version(file, file_format);
   const auto hash = file.read_attribute<std::string>("/", "campaign_hash");
   if (hash != campaign_hash)
     throw InputError("the record belongs to another campaign", "campaign hash " + hash,
@@ -125,7 +124,7 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
                       const std::filesystem::path& target) {
   check_shapes(record, target);
   auto file = Hdf5File::create(target);
-  file.write_attribute("/", "format", format);
+  file.write_attribute("/", "format", format_text(file_format));
   file.write_attribute("/", "campaign_hash", campaign_hash);
   file.write_attribute("/", "state", name_of(record.state));
   file.write_text("reason", record.reason);

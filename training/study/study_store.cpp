@@ -2,14 +2,14 @@
 
 #include "fom/output/scene_difference.hpp"
 #include "rom/base/error.hpp"
-#include "rom/base/hdf5_file.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/text_file.hpp"
 
 namespace undula::training {
 namespace {
 
-constexpr const char* stamp_format = "undula study 1";
-constexpr const char* record_format = "undula study record 1";
+constexpr FileFormat stamp_format{"undula study", "a study", 1};
+constexpr FileFormat record_format{"undula study record", "a record of a study", 1};
 
 std::string joined(const std::vector<double>& values, const char* separator) {
   std::string text;
@@ -28,10 +28,7 @@ std::string difference(const std::string& before, const std::string& now) {
 Hdf5File open_checked(const std::filesystem::path& path, const std::string& hash,
                       const std::vector<double>& values) {
   auto file = Hdf5File::open_sealed(path);
-  const auto seen =
-      file.has_attribute("/", "format") ? file.read_attribute<std::string>("/", "format") : "none";
-  if (seen != record_format)
-    throw InputError("not a record of a study", "format: " + seen, record_format, path.string());
+  checked_version(file, record_format);
   if (const auto there = file.read_attribute<std::string>("/", "study_hash"); there != hash)
     throw InputError("the record belongs to another study", "study hash " + there, "study hash " + hash,
                      path.string());
@@ -83,7 +80,7 @@ void StudyStore::store(const RecordClaim& claim, const StudyRecord& record) cons
     throw InputError("a record may be stored at its own values only", joined(record.values, ", "),
                      claim.name(), records_.folder().string());
   auto file = Hdf5File::create(records_.file(claim.name()));
-  file.write_attribute("/", "format", record_format);
+  file.write_attribute("/", "format", format_text(record_format));
   file.write_attribute("/", "study_hash", records_.hash());
   file.write_attribute("/", "state", record.state);
   file.write_text("reason", record.reason);

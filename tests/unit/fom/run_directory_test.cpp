@@ -8,6 +8,7 @@
 #include "fom/scene/scene_file.hpp"
 #include "io_folder.hpp"
 #include "rom/base/error.hpp"
+#include "rom/base/file_format.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/text_file.hpp"
 
@@ -280,6 +281,23 @@ TEST_F(RunDirectoryTest, AnOlderCheckpointStandsInForADamagedOne) {
   State state = at_rest();
   EXPECT_THROW(RunDirectory(folder / "run", one_triangle(), scene, ExistingRun::go_on, 1, state), InputError);
   EXPECT_EQ(read_time_series(folder / "run" / "time_series.csv").rows(), 11u);
+}
+
+TEST_F(RunDirectoryTest, ACheckpointOfALaterVersionIsNotReplacedByAnOlderOne) {
+  const Scene scene = two_periods();
+  const auto newest = folder / "run" / "checkpoints" / "checkpoint_8.h5";
+  {
+    State state = at_rest();
+    RunDirectory run(folder / "run", one_triangle(), scene, ExistingRun::replace, 1, state);
+    record(run, 1, 11); // checkpoints at 4 and 8
+  }
+  auto later = Hdf5File::create(newest);
+  later.write_attribute("/", "format", "undula checkpoint 3");
+  later.commit();
+  State state = at_rest();
+  EXPECT_THROW(RunDirectory(folder / "run", one_triangle(), scene, ExistingRun::go_on, 1, state),
+               LaterFormatError);
+  EXPECT_TRUE(std::filesystem::exists(newest));
 }
 
 TEST(StepTable, EnergyGapIsWhatTheTermsLeaveOver) {
