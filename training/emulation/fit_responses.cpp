@@ -10,9 +10,9 @@
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/campaign/check_record.hpp"
+#include "training/campaign/moving_snapshots.hpp"
 #include "training/emulation/fit_process.hpp"
 #include "training/emulation/quantile.hpp"
-#include "training/moving_domain/moving_snapshots.hpp"
 #include "training/sampling/trainable_scene.hpp"
 
 namespace undula::training {

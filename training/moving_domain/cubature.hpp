@@ -1,7 +1,7 @@
 // Which parts of the cut and cells of the solids stand for all, and with which weights.
 #pragma once
 
-#include "training/moving_domain/moving_snapshots.hpp"
+#include "training/campaign/moving_snapshots.hpp"
 
 namespace undula::training {
 

@@ -1,7 +1,7 @@
 // The modes of a moving domain, on the domain at rest.
 #pragma once
 
-#include "training/moving_domain/moving_snapshots.hpp"
+#include "training/campaign/moving_snapshots.hpp"
 
 namespace undula::training {
 

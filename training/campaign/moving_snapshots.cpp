@@ -1,4 +1,4 @@
-#include "training/moving_domain/moving_snapshots.hpp"
+#include "training/campaign/moving_snapshots.hpp"
 
 #include "fom/time/time_stepper.hpp"
 #include "training/campaign/check_record.hpp"
