@@ -322,7 +322,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
   std::optional<CampaignStore> store;
   std::vector<OperatingPoint> besides;
   on_root(comm, [&] {
-    store.emplace(folder, stamp_campaign(scene));
+    store = CampaignStore::of_scene(folder, scene);
     if (options.with_recorded) {
       besides = recorded_besides(scene, *store, plan);
     }
@@ -337,7 +337,7 @@ void train(const TrainOptions& options, MPI_Comm comm) {
     }
   });
   if (rank != 0) {
-    store.emplace(folder, stamp_campaign(scene));
+    store = CampaignStore::of_scene(folder, scene);
   }
 
   // 2. The full-order runs that are not there yet.

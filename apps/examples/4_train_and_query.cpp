@@ -36,7 +36,7 @@ void train_and_ask(const char* file) {
   // 3. Those runs, each marched until it repeats itself. Killed and started again, a campaign goes on.
   const std::filesystem::path folder = "example_4_runs";
   std::filesystem::remove_all(folder);
-  const training::CampaignStore store(folder, training::stamp_campaign(scene));
+  const auto store = training::CampaignStore::of_scene(folder, scene);
   training::run_campaign(scene, points, store, MPI_COMM_SELF,
                          [](const training::RunRecord& run, std::size_t done, std::size_t total) {
                            std::printf("run %zu of %zu: %s, %zu periods\n", done, total,

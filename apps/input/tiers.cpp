@@ -65,8 +65,7 @@ void prepare_tiers(const TierSources& sources, double tolerance_l_per_min, MPI_C
     // One rank makes the folder; the others find it.
     CampaignStore* store = nullptr;
     const auto open = [&] {
-      store =
-          &tiers.stores.emplace_back(std::filesystem::path(sources.campaign), stamp_campaign(source.scene));
+      store = &tiers.stores.emplace_back(CampaignStore::of_scene(sources.campaign, source.scene));
     };
     on_root(comm, open);
     if (store == nullptr) {

@@ -1,10 +1,12 @@
 #include "training/campaign/campaign_store.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "fom/output/scene_difference.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/file_format.hpp"
+#include "rom/base/hdf5_file.hpp"
 #include "rom/base/text_file.hpp"
 #include "training/campaign/run_record_file.hpp"
 #include "training/sampling/trainable_scene.hpp"
@@ -12,7 +14,10 @@
 namespace undula::training {
 namespace {
 
-constexpr FileFormat format{"undula campaign", "a campaign", 2};
+constexpr int stamped_at_a_corner = 2; // of the box
+constexpr FileFormat format{"undula campaign", "a campaign", 3, stamped_at_a_corner};
+constexpr FileFormat format_2{"undula campaign", "a campaign", stamped_at_a_corner};
+
 /// Which keys of the scenes of two campaigns differ, of those that may matter.
 std::string difference(const std::string& before, const std::string& now) {
   auto keys = differing_keys(before, now);
@@ -34,11 +39,10 @@ std::string record_name(const OperatingPoint& point) {
   return name;
 }
 
-} // namespace
-
-SceneStamp stamp_campaign(const Scene& scene) {
+/// The stamp of a scene whose operating point is replaced by `at`.
+SceneStamp stamp_at(const Scene& scene, const OperatingPoint& at) {
   Scene common = scene;
-  common.operating_point = {scene.training.frequency_low, scene.training.stroke_low, scene.training.head_low};
+  common.operating_point = {at.frequency, at.stroke, at.head};
   // What the runs of a moving domain record serves models of both kinds.
   const bool mapped = has_mapped_domain(scene);
   const bool emulated = scene.training.model == ModelKind::emulator || mapped;
@@ -47,7 +51,7 @@ SceneStamp stamp_campaign(const Scene& scene) {
     common.operating_point.stroke_scale = scene.operating_point.stroke_scale;
     if (scene.operating_point.drive == Drive::voltage) {
       common.operating_point.stroke = scene.operating_point.stroke; // thin gaps take a scale from it
-      common.operating_point.voltage = scene.training.voltage_low;
+      common.operating_point.voltage = at.voltage;
     }
   }
   auto stamp = stamp_scene(common);
@@ -59,8 +63,36 @@ SceneStamp stamp_campaign(const Scene& scene) {
   return stamp;
 }
 
+OperatingPoint point_at(double frequency, double stroke, double head, double voltage) {
+  OperatingPoint point{frequency, stroke, head};
+  point.voltage = voltage;
+  return point;
+}
+
+RecordKind kind_of_campaign(const FileFormat& of_version) { return {"campaign", of_version, difference}; }
+
+} // namespace
+
+SceneStamp stamp_campaign(const Scene& scene) { return stamp_at(scene, point_at(1, 1, 0, 1)); }
+
+SceneStamp stamp_campaign_of_version_2(const Scene& scene) {
+  const auto& box = scene.training;
+  return stamp_at(scene, point_at(box.frequency_low, box.stroke_low, box.head_low, box.voltage_low));
+}
+
 CampaignStore::CampaignStore(const std::filesystem::path& folder, const SceneStamp& stamp)
-    : records_(folder, {"campaign", format, difference}, stamp) {}
+    : records_(folder, kind_of_campaign(format), stamp) {}
+
+CampaignStore::CampaignStore(RecordStore records) : records_(std::move(records)) {}
+
+CampaignStore CampaignStore::of_scene(const std::filesystem::path& folder, const Scene& scene) {
+  const auto stamp = folder / "campaign.h5";
+  std::error_code ignored;
+  if (std::filesystem::exists(stamp, ignored) &&
+      checked_version(Hdf5File::open_sealed(stamp), format) == stamped_at_a_corner)
+    return CampaignStore(RecordStore(folder, kind_of_campaign(format_2), stamp_campaign_of_version_2(scene)));
+  return {folder, stamp_campaign(scene)};
+}
 
 std::filesystem::path CampaignStore::record_file(const OperatingPoint& point) const {
   return records_.file(record_name(point));

@@ -45,6 +45,10 @@ struct RunRecord {
 /// recorded.
 SceneStamp stamp_campaign(const Scene& scene);
 
+/// The stamp that folders of version 2 have: that of the lowest corner of the box, so that a box with other
+/// lower ends was another campaign.
+SceneStamp stamp_campaign_of_version_2(const Scene& scene);
+
 /// The right to compute one point, see RecordClaim.
 class Claim {
 public:
@@ -67,6 +71,9 @@ public:
   /// belongs to another campaign (naming the keys that differ and both hashes) or is not empty and no
   /// campaign.
   CampaignStore(const std::filesystem::path& folder, const SceneStamp& stamp);
+
+  /// The folder of a scene's campaign, of this version or of version 2.
+  static CampaignStore of_scene(const std::filesystem::path& folder, const Scene& scene);
 
   struct Status {
     std::vector<OperatingPoint> pending; ///< without a whole record, in the order of the plan
@@ -93,6 +100,8 @@ public:
 private:
   bool is_done(const OperatingPoint& point, std::vector<std::string>* damaged = nullptr) const;
   RecordStore::Check check_of(const OperatingPoint& point) const;
+
+  explicit CampaignStore(RecordStore records);
 
   RecordStore records_;
 };

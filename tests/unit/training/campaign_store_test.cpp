@@ -303,6 +303,31 @@ TEST_F(CampaignStoreTest, ProcessesShareThePlanAndComputeNothingTwice) {
   EXPECT_EQ(computed, 30);
 }
 
+TEST_F(CampaignStoreTest, AFolderOfVersion2GoesOnAsWhatItIs) {
+  Scene scene;
+  scene.name = "pump";
+  scene.training.sampled_periods = 1;
+  scene.training.frequency_low = 80;
+  const auto point = plan(1)[0];
+  {
+    const RecordStore before(folder, {"campaign", {"undula campaign", "a campaign", 2}, {}},
+                             stamp_campaign_of_version_2(scene));
+    write_run_record(
+        record_of(point), before.hash(),
+        folder / CampaignStore(CampaignStore::of_scene(folder, scene)).record_file(point).filename());
+  }
+  EXPECT_TRUE(CampaignStore::of_scene(folder, scene).status(std::vector{point}).pending.empty());
+  scene.training.frequency_low = 70; // of that version another campaign
+  EXPECT_THROW(CampaignStore::of_scene(folder, scene), InputError);
+  std::filesystem::remove_all(folder);
+  {
+    const auto now = CampaignStore::of_scene(folder, scene);
+    now.store(*now.try_claim(point), record_of(point));
+  }
+  scene.training.frequency_low = 60;
+  EXPECT_TRUE(CampaignStore::of_scene(folder, scene).status(std::vector{point}).pending.empty());
+}
+
 TEST(CampaignStamp, DependsOnWhatShapesTheRecordsOnly) {
   Scene scene;
   scene.name = "pump";
@@ -312,6 +337,11 @@ TEST(CampaignStamp, DependsOnWhatShapesTheRecordsOnly) {
   other.operating_point.frequency = 99;
   other.training.training_points = 50;
   EXPECT_EQ(stamp_campaign(other).hash, hash);
+  other.training.frequency_low = 80; // a wider box goes on with the runs
+  other.training.head_low = 1000;
+  other.training.voltage_low = 12;
+  EXPECT_EQ(stamp_campaign(other).hash, hash);
+  EXPECT_NE(stamp_campaign_of_version_2(other).hash, stamp_campaign_of_version_2(scene).hash);
   other = scene;
   other.training.sampled_periods = 2;
   EXPECT_NE(stamp_campaign(other).hash, hash);

@@ -165,7 +165,7 @@ TEST_F(FileFormats, DISABLED_WritesTheFilesOfThisVersion) {
   checkpoint.scene = stamp;
   save_checkpoint(checkpoint, shipped / "checkpoint_2");
   write_run_record(varied_record(), stamp.hash, shipped / "run_record_3.h5");
-  CampaignStore(shipped / "campaign_2", stamp);
+  CampaignStore(shipped / "campaign_3", stamp);
   const StudyStore study(shipped / "study_1", stamp);
   const auto claim = study.try_claim(study_values);
   study.store(claim.value(), {study_values, "periodic", "", {{"flow_l_per_min", 1.5}}, 2.5});
@@ -217,6 +217,7 @@ TEST_F(FileFormats, StatesAndRecordsOfThisVersionAreRead) {
   EXPECT_TRUE(record.point.varied.empty());
   const auto varied = read_run_record(folder / "run_record_3.h5", stamp.hash, varied_record().point);
   EXPECT_EQ(varied.point.varied, varied_record().point.varied);
+  EXPECT_NO_THROW(CampaignStore(folder / "campaign_3", stamp));
   EXPECT_NO_THROW(CampaignStore(folder / "campaign_2", stamp));
 
   const auto run = StudyStore(folder / "study_1", stamp).load(study_values);
@@ -266,7 +267,7 @@ const std::vector<Kind>& kinds() {
        false,
        "record.h5",
        [](const fs::path& at) { read_run_record(at / "record.h5", stamp.hash, sample_record().point); }},
-      {{"undula campaign", "", 2},
+      {{"undula campaign", "", 3},
        false,
        "campaign.h5",
        [](const fs::path& at) { CampaignStore(at, stamp); }},
