@@ -29,6 +29,7 @@ from undula._rom import (
 from undula.errors import ProgramError, RunWarning
 from undula.fitting import Calibration, Trained, calibrate, report, study, train
 from undula.maps import FlowMap, flow_map
+from undula.model_fields import PeriodFields, fields
 from undula.pictures import plot, plot_calibration, plot_fields, plot_map, plot_period, plot_run
 from undula.plotting import plot_curve
 from undula.program import Progress, find_program
@@ -49,6 +50,7 @@ __all__ = [
     "MeasuredCurve",
     "NumericsError",
     "Period",
+    "PeriodFields",
     "ProgramError",
     "Progress",
     "RecordedCurve",
@@ -59,6 +61,7 @@ __all__ = [
     "Trained",
     "calibrate",
     "check",
+    "fields",
     "find_program",
     "flow_map",
     "hq",

@@ -11,7 +11,7 @@ import undula
 
 # Sections of the page, and what stands in each: every public name once.
 SECTIONS: Dict[str, List[str]] = {
-    "Models": ["load", "ReducedModel", "Emulator", "Curve", "Period", "flow_map", "FlowMap"],
+    "Models": ["load", "ReducedModel", "Emulator", "Curve", "Period", "fields", "PeriodFields", "flow_map", "FlowMap"],
     "Scenes, computed by the program": ["check", "solve", "hq", "validate", "Progress", "find_program"],
     "Many runs of a scene": ["calibrate", "Calibration", "train", "Trained", "report", "study"],
     "Files": [
