@@ -23,6 +23,7 @@ from undula._rom import (
     NumericsError,
     Period,
     ReducedModel,
+    __version__,
     load,
     read_measured,
 )
@@ -59,6 +60,7 @@ __all__ = [
     "RunRecord",
     "RunWarning",
     "Trained",
+    "__version__",
     "calibrate",
     "check",
     "fields",

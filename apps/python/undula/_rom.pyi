@@ -8,6 +8,8 @@ _Floats = npt.NDArray[np.float64]
 _Bools = npt.NDArray[np.bool_]
 _Path = Union[str, "os.PathLike[str]"]
 
+__version__: str
+
 class InputError(ValueError):
     @property
     def what(self) -> str: ...
