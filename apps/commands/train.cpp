@@ -50,6 +50,7 @@ struct TrainOptions {
   std::optional<double> tolerance; ///< l/min
   int most_runs = 100;
   bool with_recorded = false;
+  bool fields = false;
   bool force = false;
   bool json = false;
   std::vector<std::string> petsc;
@@ -317,6 +318,11 @@ void train(const TrainOptions& options, MPI_Comm comm) {
                      "training.model = \"emulator\"", scene.file.string());
   }
   const bool moving = !emulated && has_mapped_domain(scene);
+  if (options.fields && (emulated || moving)) {
+    throw InputError("this model keeps no fields",
+                     emulated ? "an emulator, which knows means alone" : "a model of a moving domain",
+                     "--fields with a projected model of a fixed domain", "--fields");
+  }
   SamplingPlan plan =
       plan_samples(scene.training, emulated || moving ? scene.operating_point : OperatingPoint{}, varied);
   std::optional<CampaignStore> store;
@@ -385,9 +391,13 @@ void train(const TrainOptions& options, MPI_Comm comm) {
       std::cout << (options.json ? moving_model_json(built, output) : moving_model_text(built, output));
       return;
     }
-    TrainedModel trained = build_model(scene, plan, *store, timer);
+    TrainedModel trained = build_model(scene, plan, *store, timer, options.fields);
     trained.model.provenance = origin;
-    rom::save_model(trained.model, output);
+    if (trained.fields) {
+      rom::save_model(trained.model, output, *trained.fields);
+    } else {
+      rom::save_model(trained.model, output);
+    }
     for (const std::string& message : trained.left_out) {
       spdlog::warn("left out, not periodic: {}", message);
     }
@@ -426,6 +436,9 @@ void add_train_command(CLI::App& app) {
   command->add_flag(
       "--with-recorded", options->with_recorded,
       "train also with the runs of the folder that are not in the plan, as those of hq --tolerance");
+  command->add_flag(
+      "--fields", options->fields,
+      "projected models of fixed domains: keep mesh and modes in the file, to draw fields from it");
   command->add_flag("--force", options->force, "replace a model of another scene in OUTPUT");
   command->add_flag("--json", options->json, "print JSON");
   command->add_option("petsc", options->petsc, "options for PETSc, after --");

@@ -10,6 +10,7 @@
 #include "fom/levels/emulated_level.hpp"
 #include "fom/levels/reduced_level.hpp"
 #include "rom/base/error.hpp"
+#include "rom/curve/stated_drive.hpp"
 
 namespace undula::apps {
 namespace {
@@ -117,7 +118,7 @@ rom::PumpPeriod ExploredModel::period(double frequency_Hz, double drive, double 
                      "a projected model", std::filesystem::path(source_.file).filename().string());
   }
   require_inside(frequency_Hz, drive, std::span(&head_mmHg, 1));
-  return rom::pump_period(*source_.model, frequency_Hz, drive, head_mmHg);
+  return rom::pump_period(*source_.model, frequency_Hz, rom::stroke_of_scenes(drive), head_mmHg);
 }
 
 std::string ExploredModel::scene_text(double frequency_Hz, double drive, double head_mmHg) const {

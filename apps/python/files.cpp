@@ -69,6 +69,13 @@ void add_files(py::module_& module) {
       .def("read", &read, py::arg("name"),
            "A dataset as an array (float64 or int64, in its shape) or a text. Raises InputError for other "
            "names.")
+      .def(
+          "attribute",
+          [](const Hdf5File& file, const std::string& object, const std::string& name) {
+            return file.read_attribute<int>(object, name);
+          },
+          py::arg("object"), py::arg("name"),
+          "A whole number that is attached to a group or a dataset. Raises InputError for other names.")
       .def("unit", &Hdf5File::unit, py::arg("name"), "Unit of a dataset, \"\" where none is stated.")
       .def_property_readonly("sealed", &Hdf5File::sealed,
                              "Whether the file carries a seal; files of other programs do not.");

@@ -10,6 +10,7 @@
 #include "apps/python/module.hpp"
 #include "apps/python/numpy_views.hpp"
 #include "rom/base/text_file.hpp"
+#include "rom/curve/mode_amplitudes.hpp"
 #include "rom/curve/projected_curve.hpp"
 #include "rom/curve/pump_period.hpp"
 #include "rom/curve/stated_drive.hpp"
@@ -74,6 +75,15 @@ Curve curve_of(const Emulator& source, double frequency_Hz, const Numbers& heads
   return finished(std::move(curve), rom::outside_training_box(emulator, frequency_Hz, drive, heads));
 }
 
+/// Remarks of one point, warned of.
+void warn_of_point(const ReducedModel& source, double frequency_Hz, double head_mmHg, double stroke,
+                   bool periodic) {
+  for (const auto& remark :
+       rom::outside_training_box(source.model.box, frequency_Hz, stroke, std::span(&head_mmHg, 1)))
+    warn("reduced model: " + remark);
+  if (!periodic) warn("reduced model: no periodic state was found: this is the last period of a march");
+}
+
 Period period_of(const ReducedModel& source, double frequency_Hz, double head_mmHg, double stroke_mm) {
   const double stroke = rom::stroke_of_scenes(stroke_mm);
   Period period{frequency_Hz, stroke_mm, head_mmHg, {}};
@@ -81,12 +91,25 @@ Period period_of(const ReducedModel& source, double frequency_Hz, double head_mm
     const py::gil_scoped_release others_run;
     period.values = rom::pump_period(source.model, frequency_Hz, stroke, head_mmHg);
   }
-  for (const auto& remark :
-       rom::outside_training_box(source.model.box, frequency_Hz, stroke, std::span(&head_mmHg, 1)))
-    warn("reduced model: " + remark);
-  if (!period.values.periodic)
-    warn("reduced model: no periodic state was found: this is the last period of a march");
+  warn_of_point(source, frequency_Hz, head_mmHg, stroke, period.values.periodic);
   return period;
+}
+
+py::dict amplitudes_of(const ReducedModel& source, double frequency_Hz, double head_mmHg, double stroke_mm) {
+  const double stroke = rom::stroke_of_scenes(stroke_mm);
+  rom::ModeAmplitudes amplitudes;
+  {
+    const py::gil_scoped_release others_run;
+    amplitudes = rom::mode_amplitudes(source.model, frequency_Hz, stroke, head_mmHg);
+  }
+  warn_of_point(source, frequency_Hz, head_mmHg, stroke, amplitudes.periodic);
+  py::dict result;
+  result["time_s"] = array_of(amplitudes.time_s);
+  result["velocity"] = array_of(amplitudes.velocity);
+  result["pressure"] = array_of(amplitudes.pressure);
+  result["displacement"] = array_of(amplitudes.displacement);
+  result["holder_cm"] = array_of(amplitudes.holder_cm);
+  return result;
 }
 
 py::dict box_of(const rom::TrainingBox& box, const char* drive) {
@@ -205,10 +228,10 @@ void add_period(py::module_& module) {
 void add_models(py::module_& module) {
   add_period(module);
 
-  py::class_<ReducedModel> reduced(
-      module, "ReducedModel",
-      "A model projected from full-order runs. Its file holds operators and radii along the membrane, but "
-      "neither mesh nor bases: velocity and pressure fields cannot be drawn from it.");
+  py::class_<ReducedModel> reduced(module, "ReducedModel",
+                                   "A model projected from full-order runs. Its file holds operators and "
+                                   "radii along the membrane; mesh and modes, "
+                                   "which undula.fields draws, only where `undula train --fields` made it.");
   add_common(
       reduced,
       "Head-flow curve at one frequency (Hz) and stroke (mm): the periodic state at every head (mmHg; a "
@@ -219,6 +242,13 @@ void add_models(py::module_& module) {
            py::arg("stroke_mm"),
            "Flows, holder and membrane over one period at a frequency (Hz), head (mmHg) and stroke (mm). "
            "Raises InputError as curve, NumericsError where there is no finite state.")
+      .def("mode_amplitudes", &amplitudes_of, py::kw_only(), py::arg("frequency_Hz"), py::arg("head_mmHg"),
+           py::arg("stroke_mm"),
+           "Amplitudes of the modes over one period, {name: array}: \"velocity\", \"pressure\" and "
+           "\"displacement\" "
+           "(modes x instants), \"time_s\" and \"holder_cm\" (instants). undula.fields makes fields of them. "
+           "Raises and "
+           "warns as period.")
       .def_property_readonly(
           "training_box", [](const ReducedModel& source) { return box_of(source.model.box, "stroke_mm"); },
           "Lowest and highest value of the training: {\"frequency_Hz\", \"stroke_mm\", \"head_mmHg\"}.")

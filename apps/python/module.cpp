@@ -40,6 +40,7 @@ void warn(const std::string& sentence) {
 
 PYBIND11_MODULE(_rom, module) {
   module.doc() = "Reduced models of pumps: curves, periods and errors. Import undula instead.";
+  module.attr("__version__") = UNDULA_PACKAGE_VERSION;
   undula::python::add_errors(module);
   undula::python::add_curves(module);
   undula::python::add_models(module);

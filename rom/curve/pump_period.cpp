@@ -3,10 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "rom/base/error.hpp"
-#include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
-#include "rom/fixed_domain/condense.hpp"
+#include "rom/curve/mode_amplitudes.hpp"
 
 namespace undula::rom {
 namespace {
@@ -32,29 +30,20 @@ Eigen::MatrixXd axial_displacement(const Operators& operators, const PeriodicSol
 
 PumpPeriod pump_period(const Model& model, double frequency_Hz, double stroke_mm, double head_mmHg,
                        const HqOptions& options) {
-  check_operating_point(frequency_Hz, stroke_mm, std::span(&head_mmHg, 1));
-  const Operators operators = condense_pressure(model.operators);
-  const double stroke = units::length_from_mm(stroke_mm);
-  PeriodicSolver solver(operators, frequency_Hz, model.steps_per_period, options.periodic);
-  const auto state = solver.solve(stroke, units::pressure_from_mmHg(head_mmHg));
-  if (!std::isfinite(state.mean_outflow))
-    throw NumericsError("the reduced model has no finite state",
-                        plain_number(frequency_Hz) + " Hz, " + plain_number(stroke_mm) + " mm, " +
-                            plain_number(head_mmHg) + " mmHg",
-                        "an operating point in the training box");
-  const Eigen::MatrixXd velocity = solver.at_steps(state.velocity);
-  const Eigen::Index steps = velocity.cols();
+  const ModeAmplitudes amplitudes = mode_amplitudes(model, frequency_Hz, stroke_mm, head_mmHg, options);
+  const Operators& operators = model.operators;
   PumpPeriod period;
-  period.time_s = Eigen::VectorXd::LinSpaced(steps, 0, static_cast<double>(steps - 1)) /
-                  (static_cast<double>(steps) * frequency_Hz);
+  period.time_s = amplitudes.time_s;
   period.outflow_l_per_min =
-      (operators.outflow.transpose() * velocity).transpose() / units::cm3_per_s_per_l_per_min;
+      (operators.outflow.transpose() * amplitudes.velocity).transpose() / units::cm3_per_s_per_l_per_min;
   period.inflow_l_per_min =
-      (operators.inflow.transpose() * velocity).transpose() / units::cm3_per_s_per_l_per_min;
-  period.holder_mm = stroke_mm * sine_of_holder(steps).transpose();
+      (operators.inflow.transpose() * amplitudes.velocity).transpose() / units::cm3_per_s_per_l_per_min;
+  period.holder_mm = stroke_mm * sine_of_holder(amplitudes.velocity.cols()).transpose();
   period.radius_mm = operators.envelope_radius / units::cm_per_mm;
-  period.membrane_mm = axial_displacement(operators, solver, stroke, state) / units::cm_per_mm;
-  period.periodic = state.converged;
+  period.membrane_mm = (operators.envelope * amplitudes.displacement +
+                        operators.envelope_imposed * amplitudes.holder_cm.transpose()) /
+                       units::cm_per_mm;
+  period.periodic = amplitudes.periodic;
   return period;
 }
 

@@ -5,12 +5,28 @@
 #include <vector>
 
 namespace undula::rom {
+namespace {
+
+/// Places of a_p in y, and of what is left.
+struct Rows {
+  std::vector<int> pressure, kept;
+};
+
+Rows rows_of(const Operators& full) {
+  const int nu = full.velocity_modes, np = full.pressure_modes, nv = full.displacement_modes;
+  Rows rows{std::vector<int>(static_cast<std::size_t>(np)), {}};
+  std::iota(rows.pressure.begin(), rows.pressure.end(), nu);
+  for (int i = 0; i < nu; ++i) rows.kept.push_back(i);
+  for (int i = 0; i < nv; ++i) rows.kept.push_back(nu + np + i);
+  return rows;
+}
+
+} // namespace
 
 Operators condense_pressure(const Operators& full) {
-  const int nu = full.velocity_modes, np = full.pressure_modes, nv = full.displacement_modes;
+  const int nu = full.velocity_modes, np = full.pressure_modes;
   if (np == 0) return full;
-  std::vector<int> pressure(static_cast<std::size_t>(np));
-  std::iota(pressure.begin(), pressure.end(), nu);
+  const auto [pressure, kept] = rows_of(full);
   const bool algebraic = full.mass.middleRows(nu, np).isZero(0) && full.mass.middleCols(nu, np).isZero(0) &&
                          full.imposed_mass.segment(nu, np).isZero(0) &&
                          full.imposed_stiffness.segment(nu, np).isZero(0) &&
@@ -19,9 +35,6 @@ Operators condense_pressure(const Operators& full) {
   const Eigen::FullPivLU<Eigen::MatrixXd> factors(full.linear.block(nu, nu, np, np));
   if (!factors.isInvertible()) return full;
 
-  std::vector<int> kept;
-  for (int i = 0; i < nu; ++i) kept.push_back(i);
-  for (int i = 0; i < nv; ++i) kept.push_back(nu + np + i);
   Operators condensed = full;
   condensed.pressure_modes = 0;
   condensed.supremizer_modes = 0; // they are velocity modes like any other now
@@ -35,6 +48,16 @@ Operators condense_pressure(const Operators& full) {
   condensed.imposed_stiffness = full.imposed_stiffness(kept);
   condensed.head = full.head(kept);
   return condensed;
+}
+
+Eigen::MatrixXd recovered_pressure(const Operators& full, const Eigen::MatrixXd& x,
+                                   const Eigen::RowVectorXd& imposed_velocity) {
+  const int nu = full.velocity_modes, np = full.pressure_modes;
+  const auto [pressure, kept] = rows_of(full);
+  const Eigen::FullPivLU<Eigen::MatrixXd> factors(full.linear.block(nu, nu, np, np));
+  const Eigen::MatrixXd force =
+      full.linear(pressure, kept) * x + Eigen::VectorXd(full.imposed_linear(pressure)) * imposed_velocity;
+  return -factors.solve(force);
 }
 
 } // namespace undula::rom

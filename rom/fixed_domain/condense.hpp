@@ -16,4 +16,9 @@ namespace undula::rom {
 /// that is singular.
 Operators condense_pressure(const Operators& operators);
 
+/// a_p of states of the condensed model: `x` = [a_u; a_v] (nu + nv rows, a column per instant) and the
+/// holder's velocity V (cm/s, by instant). Of operators that condense_pressure condenses.
+Eigen::MatrixXd recovered_pressure(const Operators& operators, const Eigen::MatrixXd& x,
+                                   const Eigen::RowVectorXd& imposed_velocity);
+
 } // namespace undula::rom

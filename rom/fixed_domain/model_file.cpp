@@ -6,6 +6,7 @@
 #include "rom/base/file_format.hpp"
 #include "rom/base/hdf5_file.hpp"
 #include "rom/base/model_file_parts.hpp"
+#include "rom/fixed_domain/field_bases.hpp"
 #include "rom/fixed_domain/model.hpp"
 
 namespace undula::rom {
@@ -219,9 +220,9 @@ int version_of(const Hdf5File& file) {
 
 } // namespace
 
-void save_model(const Model& model, const std::string& name) {
-  check_meaning(model, name);
-  auto file = Hdf5File::create(name);
+namespace {
+
+void write_model(Hdf5File& file, const Model& model) {
   write_format_version(file, file_format);
   const auto& o = model.operators;
   file.create_group("operators");
@@ -239,6 +240,68 @@ void save_model(const Model& model, const std::string& name) {
   file.write("error_estimate/safety", std::vector<double>{model.error_safety}, {}, "1");
   file.write("error_estimate/floor", std::vector<double>{model.error_floor_l_per_min}, {}, "l/min");
   write_provenance(file, model.provenance);
+}
+
+void write_mesh(Hdf5File& file, const std::string& group, const DrawnMesh& mesh) {
+  const RowMajor points = mesh.points;
+  file.write(group + "/points", std::span(points.data(), extent(points.size())), {extent(points.rows()), 2},
+             "cm");
+  const Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> cells = mesh.cells;
+  file.write(group + "/cells", std::span(cells.data(), extent(cells.size())), {extent(cells.rows()), 3}, "1");
+}
+
+void write_modes(Hdf5File& file, const std::string& name, const Eigen::MatrixXd& modes, const Shape& shape,
+                 const std::string& unit) {
+  const RowMajor values = modes;
+  file.write(name, std::span(values.data(), extent(values.size())), shape, unit);
+}
+
+void check_fields(const Model& model, const FieldBases& fields, const std::string& name) {
+  const auto& o = model.operators;
+  const Eigen::Index n = fields.fluid.points.rows(), k = fields.solids.points.rows();
+  const auto fits = [](const Eigen::MatrixXd& modes, Eigen::Index rows, Eigen::Index columns) {
+    return modes.rows() == rows && modes.cols() == columns && modes.allFinite();
+  };
+  const auto is_mesh = [](const DrawnMesh& mesh) {
+    return mesh.points.cols() == 2 && mesh.cells.cols() == 3 && mesh.points.allFinite() &&
+           mesh.cells.size() > 0 && mesh.cells.minCoeff() >= 0 && mesh.cells.maxCoeff() < mesh.points.rows();
+  };
+  if (!is_mesh(fields.fluid) || !is_mesh(fields.solids) || !fits(fields.velocity, 2 * n, o.velocity_modes) ||
+      !fits(fields.pressure, n, o.pressure_modes) ||
+      !fits(fields.displacement, 2 * k, o.displacement_modes) || !fits(fields.holder, 2 * k, 1))
+    throw InputError("the fields do not fit the model", "another size, or a number that is not finite",
+                     "the sizes stated in rom/fixed_domain/field_bases.hpp", name);
+}
+
+void write_fields(Hdf5File& file, const FieldBases& fields) {
+  const std::size_t n = extent(fields.fluid.points.rows()), k = extent(fields.solids.points.rows());
+  file.create_group("fields");
+  file.write_attribute("fields", "format_version", field_bases_version);
+  write_mesh(file, "fields/fluid", fields.fluid);
+  write_mesh(file, "fields/solids", fields.solids);
+  write_modes(file, "fields/fluid/velocity", fields.velocity, {n, 2, extent(fields.velocity.cols())}, "1");
+  write_modes(file, "fields/fluid/pressure", fields.pressure, {n, extent(fields.pressure.cols())},
+              "dyn/cm^2");
+  write_modes(file, "fields/solids/displacement", fields.displacement,
+              {k, 2, extent(fields.displacement.cols())}, "1");
+  write_modes(file, "fields/solids/holder", fields.holder, {k, 2}, "1");
+}
+
+} // namespace
+
+void save_model(const Model& model, const std::string& name) {
+  check_meaning(model, name);
+  auto file = Hdf5File::create(name);
+  write_model(file, model);
+  file.commit();
+}
+
+void save_model(const Model& model, const std::string& name, const FieldBases& fields) {
+  check_meaning(model, name);
+  check_fields(model, fields, name);
+  auto file = Hdf5File::create(name);
+  write_model(file, model);
+  write_fields(file, fields);
   file.commit();
 }
 

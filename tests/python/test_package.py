@@ -45,6 +45,11 @@ def test_an_installed_package_is_whole(tmp_path):
     assert done.stdout.split() == [str(packages / "undula/__init__.py"), "50"]
 
 
+def test_the_version_is_that_of_the_program():
+    said = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+    assert re.search(r"\b" + re.escape(undula.__version__) + r"\b", said.splitlines()[0])
+
+
 def test_stubs_fit_the_module_and_the_package_its_types(tmp_path):
     # What pybind11 makes of classes: a metaclass of its own, and an __init__ where none can be called.
     allowed = tmp_path / "allowed"
@@ -83,6 +88,8 @@ def test_arguments_of_the_stubs_are_those_of_the_module():
 def test_everything_public_has_a_docstring_and_arrays_name_their_unit():
     for name in undula.__all__:
         item = getattr(undula, name)
+        if name == "__version__":
+            continue
         assert item.__doc__, name
         for attribute, value in vars(item).items() if isinstance(item, type) else ():
             if not attribute.startswith("_") and (callable(value) or isinstance(value, property)):

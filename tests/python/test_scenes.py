@@ -213,6 +213,26 @@ def test_how_a_program_ends_decides_the_exception(tmp_path, monkeypatch):
     assert Path(undula.find_program()) == Path(os.environ["UNDULA_BUILD"]) / "undula"  # the one built with the package
 
 
+def test_a_program_in_the_path_has_to_be_of_the_version_of_the_package(tmp_path, monkeypatch):
+    import undula.program
+
+    other = tmp_path / "undula"
+    other.write_text("#!/bin/bash\necho undula 9.9.9\n")
+    other.chmod(0o755)
+    monkeypatch.delenv("UNDULA")
+    monkeypatch.setattr(undula.program, "__file__", str(tmp_path / "a/b/c/d/program.py"))  # no program beside it
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    with pytest.raises(undula.InputError) as error:
+        undula.find_program()
+    assert error.value.seen == "undula 9.9.9" and undula.__version__ in error.value.allowed and error.value.where == str(other)
+    other.write_text(f"#!/bin/bash\necho undula {undula.__version__}\n")
+    undula.program._require_version.cache_clear()
+    assert undula.find_program() == str(other)
+    monkeypatch.setenv("PATH", str(tmp_path / "empty"))
+    with pytest.raises(undula.InputError, match="is not found"):
+        undula.find_program()
+
+
 def test_words_that_the_program_does_not_take_are_told_in_four_parts():
     with pytest.raises(undula.InputError) as error:
         undula.hq(PROJECTED, [40], frequency_Hz=120)

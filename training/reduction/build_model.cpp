@@ -6,6 +6,7 @@
 #include "rom/base/units.hpp"
 #include "training/campaign/check_record.hpp"
 #include "training/campaign/recorded_run.hpp"
+#include "training/reduction/drawn_bases.hpp"
 #include "training/reduction/projection.hpp"
 
 namespace undula::training {
@@ -60,7 +61,7 @@ rom::TrainingBox box_of(const TrainingPlan& plan) {
 } // namespace
 
 TrainedModel build_model(const Scene& scene, const SamplingPlan& plan, const CampaignStore& store,
-                         PhaseTimer& timer) {
+                         PhaseTimer& timer, bool with_fields) {
   TrainedModel trained;
   const auto training = periodic_runs(plan.training, store, trained.left_out);
   const auto held_out = periodic_runs(plan.held_out, store, trained.left_out);
@@ -80,6 +81,7 @@ TrainedModel build_model(const Scene& scene, const SamplingPlan& plan, const Cam
     const auto scope = timer.measure("project");
     trained.model.operators = project(*prepared, bases);
   }
+  if (with_fields) trained.fields = drawn_bases(prepared->disc, bases);
   trained.model.steps_per_period = scene.time.steps_per_period;
   trained.model.box = box_of(scene.training);
   trained.captured_velocity = bases.captured_velocity;

@@ -23,12 +23,14 @@ from undula._rom import (
     NumericsError,
     Period,
     ReducedModel,
+    __version__,
     load,
     read_measured,
 )
 from undula.errors import ProgramError, RunWarning
 from undula.fitting import Calibration, Trained, calibrate, report, study, train
 from undula.maps import FlowMap, flow_map
+from undula.model_fields import PeriodFields, fields
 from undula.pictures import plot, plot_calibration, plot_fields, plot_map, plot_period, plot_run
 from undula.plotting import plot_curve
 from undula.program import Progress, find_program
@@ -49,6 +51,7 @@ __all__ = [
     "MeasuredCurve",
     "NumericsError",
     "Period",
+    "PeriodFields",
     "ProgramError",
     "Progress",
     "RecordedCurve",
@@ -57,8 +60,10 @@ __all__ = [
     "RunRecord",
     "RunWarning",
     "Trained",
+    "__version__",
     "calibrate",
     "check",
+    "fields",
     "find_program",
     "flow_map",
     "hq",

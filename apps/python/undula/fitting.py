@@ -110,6 +110,7 @@ def train(
     tolerance_l_per_min: Optional[float] = None,
     most_runs: Optional[int] = None,
     with_recorded: bool = False,
+    fields: bool = False,
     force: bool = False,
     petsc: Sequence[str] = (),
     launcher: Sequence[str] = (),
@@ -119,7 +120,7 @@ def train(
 
     The box and the kind of model are settings, {"training.model": "emulator", "training.head_low_mmHg": 0, ...}. Runs
     are kept in the folder `campaign` (OUTPUT.runs) as they end: a call that was interrupted or killed goes on with the
-    others. tolerance_l_per_min: of emulators, adds runs, at most `most_runs`, until the stated error is below it.
+    others. fields: a projected model of a fixed domain keeps what undula.fields draws. tolerance_l_per_min: of emulators, adds runs, at most `most_runs`, until the stated error is below it.
     Raises InputError, NumericsError, ProgramError.
     """
     words: List[object] = ["train", scene, *setting_words(settings)]
@@ -130,6 +131,7 @@ def train(
             "--tolerance": None if tolerance_l_per_min is None else float(tolerance_l_per_min),
             "--runs": most_runs,
             "--with-recorded": with_recorded,
+            "--fields": fields,
             "--force": force,
         }
     )

@@ -11,12 +11,13 @@ import subprocess
 import tempfile
 import warnings
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import IO, Any, Callable, Dict, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
-from undula._rom import InputError, NumericsError
+from undula._rom import InputError, NumericsError, __version__
 from undula.errors import ProgramError, RunWarning, refused
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -37,7 +38,8 @@ ProgressCallback = Callable[[Progress], None]
 
 def find_program() -> str:
     """The program that computes scenes: what the environment variable UNDULA names; else the one that was built or
-    installed with this package; else the first one in the PATH. Raises InputError where there is none."""
+    installed with this package; else the first one in the PATH, which has to be of the package's version. Raises
+    InputError where there is none."""
     named = os.environ.get("UNDULA")
     package = Path(__file__).resolve().parent
     places = [package.parents[1] / "undula"]  # BUILD/python/undula
@@ -56,7 +58,18 @@ def find_program() -> str:
             "the program of the same version, in the PATH or named by the environment variable UNDULA",
             "environment",
         )
+    _require_version(found)
     return found
+
+
+@lru_cache(maxsize=None)
+def _require_version(program: str) -> None:
+    said = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False).stdout
+    version = re.search(r"\d+\.\d+\.\d+", said)
+    if version is None or version.group(0) != __version__:
+        seen = said.strip().splitlines()[0] if said.strip() else "no version"
+        allowed = f"version {__version__}, as this package; or the environment variable UNDULA, which is taken as it is"
+        raise refused("the program undula in the PATH is of another version", seen, allowed, program)
 
 
 def setting_words(settings: Optional[Mapping[str, Any]]) -> List[str]:

@@ -12,6 +12,7 @@
 
 #include "rom/base/error.hpp"
 #include "rom/base/hdf5_file.hpp"
+#include "rom/fixed_domain/field_bases.hpp"
 #include "synthetic_operators.hpp"
 
 namespace undula::rom {
@@ -161,6 +162,41 @@ TEST_F(ModelFileTest, AFileWithoutItsSealIsRefused) {
   EXPECT_THROW(load_model(file_), InputError);
   std::ofstream(file_, std::ios::binary) << content.substr(512);
   EXPECT_THROW(load_model(file_), InputError);
+}
+
+TEST_F(ModelFileTest, FieldsStandBesideTheModelAndFitIt) {
+  const Model model = sample_model();
+  FieldBases fields;
+  fields.fluid = {Eigen::MatrixXd::Random(5, 2), (Eigen::MatrixXi(2, 3) << 0, 1, 2, 2, 3, 4).finished()};
+  fields.solids = {Eigen::MatrixXd::Random(3, 2), (Eigen::MatrixXi(1, 3) << 0, 1, 2).finished()};
+  fields.velocity = Eigen::MatrixXd::Random(10, 7);
+  fields.pressure = Eigen::MatrixXd::Random(5, 3);
+  fields.displacement = Eigen::MatrixXd::Random(6, 2);
+  fields.holder = Eigen::VectorXd::Random(6);
+  save_model(model, file_.string(), fields);
+
+  // 1. The model is the same as without; the modes are kept by point, component, mode.
+  expect_same_bits(load_model(file_.string()).operators.mass, model.operators.mass);
+  const auto file = Hdf5File::open_sealed(file_);
+  EXPECT_EQ(file.read_attribute<int>("fields", "format_version"), field_bases_version);
+  const auto velocity = file.read<double>("fields/fluid/velocity", {5, 2, 7});
+  EXPECT_EQ(velocity[(3 * 2 + 1) * 7 + 4], fields.velocity(3 * 2 + 1, 4));
+  EXPECT_EQ(file.read<double>("fields/fluid/points", {5, 2})[7], fields.fluid.points(3, 1));
+  EXPECT_EQ(file.read<int>("fields/fluid/cells", {2, 3})[4], 3);
+  EXPECT_EQ(file.read<double>("fields/solids/holder", {3, 2})[3], fields.holder[3]);
+  EXPECT_EQ(file.read<double>("fields/solids/displacement", {3, 2, 2}).size(), 12U);
+
+  // 2. What does not fit is not written.
+  const auto refused = [&](const std::function<void(FieldBases&)>& spoil) {
+    FieldBases other = fields;
+    spoil(other);
+    EXPECT_THROW(save_model(model, file_.string(), other), InputError);
+  };
+  refused([](FieldBases& f) { f.velocity.conservativeResize(10, 6); });
+  refused([](FieldBases& f) { f.pressure.conservativeResize(4, 3); });
+  refused([](FieldBases& f) { f.fluid.cells(0, 0) = 5; });
+  refused([](FieldBases& f) { f.holder[0] = std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_NO_THROW(load_model(file_.string()));
 }
 
 TEST(RestrictOperators, EqualsProjectionOnFewerModes) {
