@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   undula::apps::add_calibrate_command(app);
   undula::apps::add_report_command(app);
   undula::apps::add_study_command(app);
+  undula::apps::add_show_command(app);
 #ifdef UNDULA_WITH_EXPLORER
   undula::apps::add_explore_command(app);
 #endif

@@ -14,6 +14,7 @@ void add_period_command(CLI::App& app);
 void add_validate_command(CLI::App& app);
 void add_calibrate_command(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_show_command(CLI::App& app);
 void add_study_command(CLI::App& app);
 /// Where the program is built with cpp-httplib.
 void add_explore_command(CLI::App& app);

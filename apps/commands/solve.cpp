@@ -356,7 +356,7 @@ void solve(const SolveOptions& options, MPI_Comm comm) {
     warn_of_unsettled(run.statistics);
     std::cout << (options.json ? json_text(run, timer) : table_text(run));
     if (options.plot) {
-      plot_run(*output, scene, state);
+      plot_run(drawn_run(*output), scene, state);
     }
   });
 }

@@ -154,21 +154,21 @@ void plot_holder(const std::filesystem::path& folder, const TimeSeries& series, 
 }
 
 /// Mean shear of the walls over the last whole period, with the solids at rest.
-void plot_wall_shear(const RunDirectory& run, const std::string& title) {
-  if (!run.wall_shear().has_period() || run.view().walls.empty()) {
+void plot_wall_shear(const DrawnRun& run, const std::string& title) {
+  if (run.wall_shear.empty() || run.view.walls.empty()) {
     return;
   }
   std::vector<double> pascal;
-  for (const double shear : run.wall_shear().mean()) {
+  for (const double shear : run.wall_shear) {
     pascal.push_back(units::pressure_to_Pa(shear));
   }
   std::vector<Outline> solids;
-  for (const auto& edge : boundary_edges(run.view().solids)) {
-    solids.push_back({run.view().solids.points[static_cast<std::size_t>(edge[0])],
-                      run.view().solids.points[static_cast<std::size_t>(edge[1])]});
+  for (const auto& edge : boundary_edges(run.view.solids)) {
+    solids.push_back({run.view.solids.points[static_cast<std::size_t>(edge[0])],
+                      run.view.solids.points[static_cast<std::size_t>(edge[1])]});
   }
-  plot_pieces(run.folder() / "wall_shear.png", title + ", last period",
-              {run.view().walls, pascal, "mean wall shear (Pa)"}, solids);
+  plot_pieces(run.folder / "wall_shear.png", title + ", last period",
+              {run.view.walls, pascal, "mean wall shear (Pa)"}, solids);
 }
 
 void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, const std::string& title) {
@@ -179,15 +179,15 @@ void plot_flow(const std::filesystem::path& folder, const TimeSeries& series, co
 }
 
 /// Flow, torque and outlet pressure over the last two turns, and the hose as the run left it.
-void plot_hose(const RunDirectory& run, const Scene& scene, const State& state) {
+void plot_hose(const DrawnRun& run, const Scene& scene, const State& state) {
   const auto& point = scene.operating_point;
   const std::string title = scene.name + ": " + setting_text(point) + ", head " +
                             plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
-  plot_state(run.folder(), run.view(), state, title);
+  plot_state(run.folder, run.view, state, title);
 
   const auto turns = [&] {
     std::vector<double> result;
-    for (const int step : run.series().steps) {
+    for (const int step : run.series.steps) {
       result.push_back(static_cast<double>(step) / scene.time.steps_per_period);
     }
     return result;
@@ -199,7 +199,7 @@ void plot_hose(const RunDirectory& run, const Scene& scene, const State& state) 
     std::vector<std::vector<double>> values;
     std::vector<Line> lines;
     for (const auto& [name, legend] : names) {
-      values.push_back(column(run.series(), name));
+      values.push_back(column(run.series, name));
     }
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (!values[k].empty()) {
@@ -207,7 +207,7 @@ void plot_hose(const RunDirectory& run, const Scene& scene, const State& state) 
       }
     }
     if (!lines.empty()) {
-      plot_lines(run.folder() / picture, title, "turns", label, lines);
+      plot_lines(run.folder / picture, title, "turns", label, lines);
     }
   };
   using Names = std::pair<const char*, const char*>;
@@ -224,9 +224,16 @@ void plot_hose(const RunDirectory& run, const Scene& scene, const State& state) 
 
 } // namespace
 
-void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
+DrawnRun drawn_run(const RunDirectory& run) {
+  const bool membrane = !run.view().probes.radius.empty();
+  const auto& shear = run.wall_shear();
+  return {run.folder(), run.view(), run.series(), membrane ? &run.membrane() : nullptr,
+          shear.has_period() ? shear.mean() : std::vector<double>()};
+}
+
+void plot_run(const DrawnRun& run, const Scene& scene, const State& state) {
   if (scene.problem.general) {
-    plot_state(run.folder(), run.view(), state, scene.name + ", t = " + plain_number(state.time) + " s");
+    plot_state(run.folder, run.view, state, scene.name + ", t = " + plain_number(state.time) + " s");
     return;
   }
   const auto& point = scene.operating_point;
@@ -238,11 +245,13 @@ void plot_run(const RunDirectory& run, const Scene& scene, const State& state) {
                             plain_number(units::length_to_mm(point.stroke)) + " mm, head " +
                             plain_number(units::pressure_to_mmHg(point.head)) + " mmHg";
   plot_state(
-      run.folder(), run.view(), state,
+      run.folder, run.view, state,
       title + ", t/T = " + plain_number(static_cast<double>(state.step) / scene.time.steps_per_period));
-  plot_membrane(run.folder(), run.membrane(), run.view().probes.radius, scene.time.steps_per_period, title);
-  plot_flow(run.folder(), run.series(), title);
-  plot_holder(run.folder(), run.series(), title);
+  if (run.membrane != nullptr) {
+    plot_membrane(run.folder, *run.membrane, run.view.probes.radius, scene.time.steps_per_period, title);
+  }
+  plot_flow(run.folder, run.series, title);
+  plot_holder(run.folder, run.series, title);
   plot_wall_shear(run, title);
 }
 
