@@ -162,4 +162,15 @@ template Eigen::Matrix3d part_convection<2>(double, const Eigen::Matrix3d&,
 template Eigen::VectorXd opening_functional(const Discretisation<2>&, const Share&, const std::string&);
 template Eigen::VectorXd body_force_load(const Discretisation<2>&, const Share&, double);
 
+template struct PartIntegrals<3>;
+template PartIntegrals<3> integrate_part(const Discretisation<3>&, int, const PartGeometry<3>&);
+template void add_fluid_mass(const Discretisation<3>&, int, const PartIntegrals<3>&, Triplets&);
+template void add_fluid_viscosity_and_pressure(const Discretisation<3>&, int, const PartGeometry<3>&,
+                                               const PartIntegrals<3>&, Triplets&);
+template Eigen::Matrix4d part_convection<3>(double, const Eigen::Matrix4d&,
+                                            const Eigen::Matrix<double, 3, 4>&,
+                                            const Eigen::Matrix<double, 3, 4>&);
+template Eigen::VectorXd opening_functional(const Discretisation<3>&, const Share&, const std::string&);
+template Eigen::VectorXd body_force_load(const Discretisation<3>&, const Share&, double);
+
 } // namespace undula::fom

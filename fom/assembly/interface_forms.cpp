@@ -106,4 +106,7 @@ void add_interface(const Discretisation<dim>& disc, const Share& share,
 template void add_interface(const Discretisation<2>&, const Share&, std::span<const PartGeometry<2>>,
                             Triplets&, Triplets&);
 
+template void add_interface(const Discretisation<3>&, const Share&, std::span<const PartGeometry<3>>,
+                            Triplets&, Triplets&);
+
 } // namespace undula::fom

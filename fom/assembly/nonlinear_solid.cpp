@@ -187,4 +187,16 @@ template SolidResponse<2> solid_response(const Discretisation<2>&, const std::ve
 template void add_tangent_product(const Discretisation<2>&, const std::vector<SolidCell>&,
                                   const SolidResponse<2>&, const Eigen::VectorXd&, bool, Eigen::VectorXd&);
 
+template bool has_nonlinear_solid(const Discretisation<3>&);
+template std::vector<SolidCell> nonlinear_cells(const Discretisation<3>&, const Share&);
+template std::array<int, 30> cell_unknowns(const Discretisation<3>&, const SolidCell&);
+template CellResponse<3> cell_response<3>(const Discretisation<3>&, const SolidCell&,
+                                          const CellResponse<3>::Values&, const CellResponse<3>::Values&,
+                                          bool, const CellResponse<3>::Values*);
+template SolidResponse<3> solid_response(const Discretisation<3>&, const std::vector<SolidCell>&,
+                                         const Eigen::VectorXd&, const Eigen::VectorXd&, const SolidRates&,
+                                         bool, const Eigen::VectorXd*);
+template void add_tangent_product(const Discretisation<3>&, const std::vector<SolidCell>&,
+                                  const SolidResponse<3>&, const Eigen::VectorXd&, bool, Eigen::VectorXd&);
+
 } // namespace undula::fom

@@ -85,4 +85,9 @@ template std::vector<PartGeometry<2>> part_geometries(const Discretisation<2>&);
 template Eigen::Matrix<double, 2, 3> domain_velocity(const Discretisation<2>&, int);
 template SmallestVolume<2> smallest_volume(const Discretisation<2>&);
 
+template PartGeometry<3> part_geometry(const Discretisation<3>&, int);
+template std::vector<PartGeometry<3>> part_geometries(const Discretisation<3>&);
+template Eigen::Matrix<double, 3, 4> domain_velocity(const Discretisation<3>&, int);
+template SmallestVolume<3> smallest_volume(const Discretisation<3>&);
+
 } // namespace undula::fom

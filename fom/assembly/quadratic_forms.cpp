@@ -95,4 +95,8 @@ template void add_quadratic_part(const Discretisation<2>&, int, const PartGeomet
 template QuadraticProducts<2> quadratic_convection(const Discretisation<2>&, int, const PartGeometry<2>&,
                                                    const VelocityElement<2, 2>::Coefficients&);
 
+template void add_quadratic_part(const Discretisation<3>&, int, const PartGeometry<3>&, Triplets&, Triplets&);
+template QuadraticProducts<3> quadratic_convection(const Discretisation<3>&, int, const PartGeometry<3>&,
+                                                   const VelocityElement<3, 2>::Coefficients&);
+
 } // namespace undula::fom

@@ -14,11 +14,11 @@ namespace undula::fom {
 /// the second part off the facet. Connected parts share the nodes of their facet.
 template <int dim>
 struct QuadraticPatch {
-  static_assert(dim == 2, "the rule on the facet is that of an edge");
   using Element = VelocityElement<dim, 2>;
   static constexpr int nodes_on_facet = dim * (dim + 1) / 2,
                        nodes_of_both = 2 * Element::nodes - nodes_on_facet;
-  static constexpr int points = 2; ///< Gauss points: squared jumps of first derivatives times r are exact
+  /// Of equal weight: squared jumps of first derivatives are exact, in axisymmetric space times r.
+  static constexpr int points = dim;
   using Form = Eigen::Matrix<double, nodes_of_both, 1>;
 
   std::array<int, nodes_of_both> nodes; ///< velocity nodes
@@ -31,6 +31,19 @@ struct QuadraticPatch {
   std::array<double, points> radius{}; ///< first coordinate of the points, cm
 };
 
+/// Barycentric coordinates of the points on a facet: Gauss's two on an edge; three inside of a triangle
+/// (Strang & Fix 1973).
+template <int dim>
+std::array<std::array<double, dim>, dim> facet_points() {
+  if constexpr (dim == 2) {
+    const double gauss = 0.5 / std::sqrt(3.0), first = 0.5 - gauss, second = 0.5 + gauss;
+    return {{{1 - first, first}, {1 - second, second}}};
+  } else {
+    constexpr double near = 2.0 / 3, far = 1.0 / 6;
+    return {{{near, far, far}, {far, near, far}, {far, far, near}}};
+  }
+}
+
 /// `linear`: the facet's FacetPatch; `first`, `second`: geometry of the connection's two parts.
 template <int dim>
 QuadraticPatch<dim> quadratic_patch(const Discretisation<dim>& disc, const FacetConnection& connection,
@@ -38,8 +51,7 @@ QuadraticPatch<dim> quadratic_patch(const Discretisation<dim>& disc, const Facet
                                     const PartGeometry<dim>& second) {
   using Patch = QuadraticPatch<dim>;
   using Element = typename Patch::Element;
-  const double gauss = 0.5 / std::sqrt(3.0);
-  const std::array<double, Patch::points> along{0.5 - gauss, 0.5 + gauss};
+  const auto rule = facet_points<dim>();
   const auto& on_facet = disc.cut.facets.facets[connection.facet].points;
   Patch patch;
   for (auto& jump : patch.gradient_jump) jump.setZero();
@@ -61,8 +73,7 @@ QuadraticPatch<dim> quadratic_patch(const Discretisation<dim>& disc, const Facet
     };
     for (int q = 0; q < Patch::points; ++q) {
       typename Element::Barycentric lambda = Element::Barycentric::Zero();
-      lambda[local(on_facet[0])] = 1 - along[q];
-      lambda[local(on_facet[1])] = along[q];
+      for (int k = 0; k < dim; ++k) lambda[local(on_facet[k])] = rule[q][k];
       const auto gradients = Element::gradients(lambda, geometry.gradients);
       for (int i = 0; i < Element::nodes; ++i)
         patch.gradient_jump[q].col(place[i]) += sign * gradients.col(i);

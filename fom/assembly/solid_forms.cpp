@@ -103,4 +103,7 @@ void add_solid_stiffness(const Discretisation<dim>& disc, const Share& share, co
 template void add_solid_mass(const Discretisation<2>&, const Share&, const SolidFactor<2>&, Triplets&);
 template void add_solid_stiffness(const Discretisation<2>&, const Share&, const SolidFactor<2>&, Triplets&);
 
+template void add_solid_mass(const Discretisation<3>&, const Share&, const SolidFactor<3>&, Triplets&);
+template void add_solid_stiffness(const Discretisation<3>&, const Share&, const SolidFactor<3>&, Triplets&);
+
 } // namespace undula::fom

@@ -148,4 +148,9 @@ template void add_fluid_stabilisation(const Discretisation<2>&, const Share&,
 template VelocityJumps<2> velocity_jumps(const Discretisation<2>&, const Share&,
                                          std::span<const PartGeometry<2>>);
 
+template void add_fluid_stabilisation(const Discretisation<3>&, const Share&,
+                                      std::span<const PartGeometry<3>>, Triplets&);
+template VelocityJumps<3> velocity_jumps(const Discretisation<3>&, const Share&,
+                                         std::span<const PartGeometry<3>>);
+
 } // namespace undula::fom

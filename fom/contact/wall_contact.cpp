@@ -6,6 +6,7 @@
 #include <map>
 
 #include "geometry/mesh/polygons.hpp"
+#include "geometry/mesh/triangles.hpp"
 
 namespace undula::fom {
 
@@ -13,6 +14,40 @@ namespace {
 
 /// Part of the film below which the barrier goes on as its tangent.
 constexpr double tangent_below = 0.01;
+
+/// Local vertices of the facet of a cell opposite vertex `opposite`, the cell on their left or, in space,
+/// behind them.
+template <int dim>
+std::array<int, dim> facet_vertices(int opposite) {
+  if constexpr (dim == 2) {
+    return {(opposite + 1) % 3, (opposite + 2) % 3};
+  } else {
+    constexpr std::array<std::array<int, 3>, 4> vertices{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+    return vertices[static_cast<std::size_t>(opposite)];
+  }
+}
+
+/// Edges of a facet.
+template <int dim>
+constexpr int middles = dim == 2 ? 1 : 3;
+
+/// The node of a quadratic cell half-way between two of its vertices.
+template <int dim>
+int middle_node(int a, int b) {
+  constexpr auto edges = local_edges<dim>();
+  const auto found = std::find(edges.begin(), edges.end(), std::array{std::min(a, b), std::max(a, b)});
+  return dim + 1 + static_cast<int>(found - edges.begin());
+}
+
+/// From the nearest point of a wall to x.
+Point<2> away_from(const BoundaryWall<2>& wall, const Point<2>& x) {
+  const Point<2> along = wall.points[1] - wall.points[0];
+  const double s = nearest_on_segment<2>(wall.points[0], wall.points[1], x);
+  return x - wall.points[0] - s * along;
+}
+Point<3> away_from(const BoundaryWall<3>& wall, const Point<3>& x) {
+  return x - nearest_on_triangle(wall.points, x);
+}
 
 } // namespace
 
@@ -25,7 +60,6 @@ FilmPressure film_pressure(const ContactSettings& settings, double gap) {
 
 template <int dim>
 WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactSettings& settings) {
-  static_assert(dim == 2);
   WallContact<dim> contact;
   contact.settings = settings;
   contact.axisymmetric = disc.problem.space == Space::axisymmetric;
@@ -47,17 +81,16 @@ WallContact<dim> prepare_contact(const Discretisation<dim>& disc, const ContactS
     const auto& mesh = disc.problem.solids[s].mesh;
     for (const auto& facet : build_facet_table(mesh).facets) {
       if (facet.cells[1] >= 0) continue;
-      // Opposite vertex k: the edge from k + 1 to k + 2 has the cell on its left.
-      const int first = (facet.local[0] + 1) % 3, last = (facet.local[0] + 2) % 3;
-      const int middle = dim + first + last; // edges (0,1), (0,2), (1,2) follow the vertices
+      const auto vertices = facet_vertices<dim>(facet.local[0]);
       const auto& nodes = disc.solid_spaces[s].cell_nodes[facet.cells[0]];
       auto& edge = contact.edges.emplace_back();
-      edge.nodes = {skin_node(solid, nodes[first]), skin_node(solid, nodes[last]),
-                    skin_node(solid, nodes[middle])};
-      for (const auto& [k, local] : {std::pair{0, first}, {1, last}}) {
-        edge.unknowns[k] = disc.solid_unknown(solid, nodes[local], 0) - disc.fluid_unknowns();
-        edge.at_rest[k] = disc.solid_spaces[s].nodes[nodes[local]];
+      for (int k = 0; k < dim; ++k) {
+        edge.nodes[k] = skin_node(solid, nodes[vertices[k]]);
+        edge.unknowns[k] = disc.solid_unknown(solid, nodes[vertices[k]], 0) - disc.fluid_unknowns();
+        edge.at_rest[k] = disc.solid_spaces[s].nodes[nodes[vertices[k]]];
       }
+      for (int k = 0; k < middles<dim>; ++k)
+        edge.nodes[dim + k] = skin_node(solid, nodes[middle_node<dim>(vertices[k], vertices[(k + 1) % dim])]);
     }
   }
   return contact;
@@ -68,9 +101,7 @@ Gap<dim> gap_to_walls(const WallContact<dim>& contact, const Point<dim>& x) {
   Gap<dim> gap;
   double nearest = std::numeric_limits<double>::infinity(), inward = -1;
   for (const auto& wall : contact.walls) {
-    const Point<dim> along = wall.points[1] - wall.points[0];
-    const double s = nearest_on_segment<dim>(wall.points[0], wall.points[1], x);
-    const Point<dim> away = x - wall.points[0] - s * along;
+    const Point<dim> away = away_from(wall, x);
     const double distance = away.norm(), side = away.dot(wall.normal);
     // At a corner, two walls are equally near; the one that faces x more decides which side x is on.
     if (distance > nearest * (1 + 1e-12) || (distance >= nearest * (1 - 1e-12) && std::abs(side) <= inward))
@@ -114,19 +145,28 @@ double film_difference(const WallContact<dim>& contact, const Eigen::VectorXd& f
 
 namespace {
 
-/// Area vectors of the skin's nodes, out of the solids where they are placed: Simpson's rule on every edge.
+/// Area vectors of the skin's nodes, out of the solids where they are placed: Simpson's rule on every edge,
+/// on triangles the rule of the mid-points, as exact.
 template <int dim>
 std::vector<Point<dim>> node_areas(const WallContact<dim>& contact, const Eigen::VectorXd& placement) {
   const Measure measure{contact.axisymmetric};
   std::vector<Point<dim>> areas(contact.skin.size(), Point<dim>::Zero());
   for (const auto& edge : contact.edges) {
-    const Point<dim> a = edge.at_rest[0] + placement.template segment<dim>(edge.unknowns[0]),
-                     b = edge.at_rest[1] + placement.template segment<dim>(edge.unknowns[1]);
-    const Point<dim> outward(b[1] - a[1], a[0] - b[0]);
-    const std::array<double, 3> weights = {measure(a[0]) / 6, measure(b[0]) / 6,
-                                           4 * measure(0.5 * (a[0] + b[0])) / 6};
-    for (int k = 0; k < 3; ++k)
-      if (edge.nodes[k] >= 0) areas[edge.nodes[k]] += weights[k] * outward;
+    std::array<Point<dim>, dim> x;
+    for (int k = 0; k < dim; ++k) x[k] = edge.at_rest[k] + placement.template segment<dim>(edge.unknowns[k]);
+    const auto add = [&](int node, const Point<dim>& area) {
+      if (node >= 0) areas[node] += area;
+    };
+    if constexpr (dim == 2) {
+      const auto &a = x[0], &b = x[1];
+      const Point<dim> outward(b[1] - a[1], a[0] - b[0]);
+      add(edge.nodes[0], measure(a[0]) / 6 * outward);
+      add(edge.nodes[1], measure(b[0]) / 6 * outward);
+      add(edge.nodes[2], 4 * measure(0.5 * (a[0] + b[0])) / 6 * outward);
+    } else {
+      const Point<dim> outward = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]);
+      for (int k = dim; k < 2 * dim; ++k) add(edge.nodes[k], outward / 3);
+    }
   }
   return areas;
 }
@@ -212,5 +252,14 @@ template WallContact<2> prepare_contact(const Discretisation<2>&, const ContactS
 template Gap<2> gap_to_walls(const WallContact<2>&, const Point<2>&);
 template double smallest_gap(const WallContact<2>&, const Eigen::VectorXd&);
 template ContactForce contact_force(const WallContact<2>&, const Discretisation<2>&, const Eigen::VectorXd&);
+
+template double film_difference(const WallContact<3>&, const Eigen::VectorXd&, const Eigen::VectorXd&);
+template void keep_off_walls(const WallContact<3>&, const Eigen::VectorXd&, Eigen::VectorXd&);
+template ContactBalance contact_balance(const WallContact<3>&, const Eigen::VectorXd&,
+                                        const Eigen::VectorXd&);
+template WallContact<3> prepare_contact(const Discretisation<3>&, const ContactSettings&);
+template Gap<3> gap_to_walls(const WallContact<3>&, const Point<3>&);
+template double smallest_gap(const WallContact<3>&, const Eigen::VectorXd&);
+template ContactForce contact_force(const WallContact<3>&, const Discretisation<3>&, const Eigen::VectorXd&);
 
 } // namespace undula::fom

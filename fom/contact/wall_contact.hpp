@@ -25,11 +25,13 @@ struct WallContact {
   };
   /// Free nodes. Those that are within the film of a wall at rest are left out: there a solid is attached.
   std::vector<SkinNode> skin;
-  /// An edge of the skin with its vertices, the solid on their left, and its three quadratic nodes.
+  /// An edge of the skin with its vertices, the solid on their left, and its quadratic nodes; in space a
+  /// triangle, that goes round counter-clockwise as seen from outside of the solid.
   struct SkinEdge {
-    std::array<int, 2> unknowns; ///< of the vertices, component 0 among the solids' unknowns
-    std::array<Point<dim>, 2> at_rest;
-    std::array<int, 3> nodes; ///< first, last, middle: index into `skin`, -1: takes no part
+    std::array<int, dim> unknowns; ///< of the vertices, component 0 among the solids' unknowns
+    std::array<Point<dim>, dim> at_rest;
+    /// Vertices, then the mid-points of (0,1), (1,2), (2,0): index into `skin`, -1: takes no part.
+    std::array<int, dim*(dim + 1) / 2> nodes;
   };
   std::vector<SkinEdge> edges;
   std::vector<BoundaryWall<dim>> walls;

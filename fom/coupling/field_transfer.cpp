@@ -124,4 +124,6 @@ Eigen::VectorXd FieldTransfer<dim>::displacements(const Eigen::VectorXd& before)
 
 template class FieldTransfer<2>;
 
+template class FieldTransfer<3>;
+
 } // namespace undula::fom

@@ -130,12 +130,13 @@ void MovingStepper<dim>::place_map(const Eigen::VectorXd& placement, double dt, 
   map.velocity = by_node<dim>((alpha[0] * state.map[0] + alpha[1] * last + alpha[2] * older) / dt);
   const auto smallest = smallest_volume(disc_);
   report_.smallest_volume_ratio = std::min(report_.smallest_volume_ratio, smallest.ratio);
+  std::string place;
+  for (int c = 0; c < dim; ++c) place += (c > 0 ? ", " : "") + std::to_string(smallest.place[c]);
   if (smallest.ratio <= 0)
-    throw NumericsError("the map of the fluid's domain folds",
-                        "volume ratio " + std::to_string(smallest.ratio) + " of the element at rest about (" +
-                            std::to_string(smallest.place[0]) + ", " + std::to_string(smallest.place[1]) +
-                            ") cm",
-                        "coupling = \"explicit\", which cuts anew, or a smaller time step");
+    throw NumericsError(
+        "the map of the fluid's domain folds",
+        "volume ratio " + std::to_string(smallest.ratio) + " of the element at rest about (" + place + ") cm",
+        "coupling = \"explicit\", which cuts anew, or a smaller time step");
 }
 
 template <int dim>
@@ -231,5 +232,7 @@ void MovingStepper<dim>::advance(State& state) {
 }
 
 template class MovingStepper<2>;
+
+template class MovingStepper<3>;
 
 } // namespace undula::fom

@@ -138,4 +138,8 @@ template struct DomainExtension<2>;
 template DomainExtension<2> prepare_extension(const Discretisation<2>&, const ExtensionSettings&);
 template std::vector<Point<2>> extend(const DomainExtension<2>&, const Eigen::VectorXd&);
 
+template struct DomainExtension<3>;
+template DomainExtension<3> prepare_extension(const Discretisation<3>&, const ExtensionSettings&);
+template std::vector<Point<3>> extend(const DomainExtension<3>&, const Eigen::VectorXd&);
+
 } // namespace undula::fom

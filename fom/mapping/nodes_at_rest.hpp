@@ -5,6 +5,7 @@
 
 #include "fom/assembly/sparse.hpp"
 #include "fom/space/discretisation.hpp"
+#include "fom/space/facet_axis.hpp"
 
 namespace undula::fom {
 
@@ -16,7 +17,7 @@ std::vector<char> nodes_at_rest(const Discretisation<dim>& disc, int component) 
   std::vector<char> at_rest(disc.fluid_nodes.dof_point.size(), 0);
   for (const auto& piece : disc.cut.boundary) {
     const auto& condition = disc.problem.boundary.at(disc.problem.background.boundary_names[piece.tag]);
-    if (condition.kind == Kind::symmetry && component != 0) continue;
+    if (condition.kind == Kind::symmetry && component != normal_axis(disc.cut, piece.facet)) continue;
     const int opposite = disc.cut.facets.facets[piece.facet].local[0];
     for (int a = 0; a <= dim; ++a)
       if (a != opposite) at_rest[disc.fluid_nodes.part_dofs[piece.part][a]] = 1;

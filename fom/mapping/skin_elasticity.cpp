@@ -109,4 +109,7 @@ SkinElasticity<dim> skin_elasticity(const Discretisation<dim>& disc,
 template SkinElasticity<2> skin_elasticity(const Discretisation<2>&, std::span<const PartGeometry<2>>, double,
                                            double);
 
+template SkinElasticity<3> skin_elasticity(const Discretisation<3>&, std::span<const PartGeometry<3>>, double,
+                                           double);
+
 } // namespace undula::fom

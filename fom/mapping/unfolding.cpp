@@ -178,4 +178,9 @@ template Unfolding<2> prepare_unfolding(const Discretisation<2>&, const Unfoldin
 template UnfoldedMap<2> unfold(const Unfolding<2>&, const std::vector<Point<2>>&,
                                const std::function<std::vector<Eigen::VectorXd>()>&);
 
+template struct Unfolding<3>;
+template Unfolding<3> prepare_unfolding(const Discretisation<3>&, const UnfoldingSettings&);
+template UnfoldedMap<3> unfold(const Unfolding<3>&, const std::vector<Point<3>>&,
+                               const std::function<std::vector<Eigen::VectorXd>()>&);
+
 } // namespace undula::fom

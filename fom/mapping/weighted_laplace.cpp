@@ -71,4 +71,7 @@ WeightedLaplace<dim> weighted_laplace(const Discretisation<dim>& disc,
 template WeightedLaplace<2> weighted_laplace(const Discretisation<2>&, std::span<const PartGeometry<2>>,
                                              std::span<const double>, const Point<2>&);
 
+template WeightedLaplace<3> weighted_laplace(const Discretisation<3>&, std::span<const PartGeometry<3>>,
+                                             std::span<const double>, const Point<3>&);
+
 } // namespace undula::fom

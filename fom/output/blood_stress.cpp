@@ -42,4 +42,6 @@ double haemolysis_percent(const BloodDamageLaw& law, double damage_rate, double 
 
 template BloodStress blood_stress(const Discretisation<2>&, const BloodDamageLaw&, const Eigen::VectorXd&);
 
+template BloodStress blood_stress(const Discretisation<3>&, const BloodDamageLaw&, const Eigen::VectorXd&);
+
 } // namespace undula::fom

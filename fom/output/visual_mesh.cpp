@@ -8,17 +8,43 @@
 
 namespace undula::fom {
 
+namespace {
+
+/// Simplices that a quadratic one is split into, by its nodes: vertices, then mid-points in the order of
+/// local_edges. In space the octahedron that four corners leave is split along one of its diagonals.
+template <int dim>
+constexpr auto split_simplices() {
+  if constexpr (dim == 2)
+    return std::array<std::array<int, 3>, 4>{{{0, 3, 4}, {3, 1, 5}, {4, 5, 2}, {3, 5, 4}}};
+  else
+    return std::array<std::array<int, 4>, 8>{{{0, 4, 5, 6},
+                                              {4, 1, 7, 8},
+                                              {5, 7, 2, 9},
+                                              {6, 8, 9, 3},
+                                              {4, 9, 7, 5},
+                                              {4, 9, 8, 7},
+                                              {4, 9, 6, 8},
+                                              {4, 9, 5, 6}}};
+}
+
+/// From the first vertex to the others, column by column.
+template <int dim>
+Eigen::Matrix<double, dim, dim> edges_of(const std::array<Point<dim>, dim + 1>& vertices) {
+  Eigen::Matrix<double, dim, dim> edges;
+  for (int a = 1; a <= dim; ++a) edges.col(a - 1) = vertices[a] - vertices[0];
+  return edges;
+}
+
+} // namespace
+
 template <int dim>
 bool is_flat(const std::array<Point<dim>, dim + 1>& vertices) {
   // A filter that divides by the measure (a gradient) loses all digits below this part of a regular simplex.
   constexpr double least = 1e-9;
-  Eigen::Matrix<double, dim, dim> edges;
   double longest = 0;
-  for (int a = 0; a <= dim; ++a) {
-    if (a > 0) edges.col(a - 1) = vertices[a] - vertices[0];
+  for (int a = 0; a <= dim; ++a)
     for (int b = 0; b < a; ++b) longest = std::max(longest, (vertices[a] - vertices[b]).norm());
-  }
-  return std::abs(edges.determinant()) <= least * std::pow(longest, dim);
+  return std::abs(edges_of<dim>(vertices).determinant()) <= least * std::pow(longest, dim);
 }
 
 template <int dim>
@@ -50,16 +76,16 @@ FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
         continue;
       }
       constexpr auto edges = local_edges<dim>();
-      std::array<int, edges.size()> middle;
+      std::array<int, QuadraticSpace<dim>::nodes_per_cell> nodes{};
+      std::copy(simplex.begin(), simplex.end(), nodes.begin());
       for (std::size_t e = 0; e < edges.size(); ++e)
-        middle[e] = point_at(disc.vertex_nodes() + disc.fluid_edges.part_edges[p][e], index,
-                             0.5 * (Barycentric::Unit(edges[e][0]) + Barycentric::Unit(edges[e][1])));
-      static_assert(dim == 2, "four triangles");
-      for (const auto& cell : {std::array{simplex[0], middle[0], middle[1]},
-                               {middle[0], simplex[1], middle[2]},
-                               {middle[1], middle[2], simplex[2]},
-                               {middle[0], middle[2], middle[1]}})
-        picture.mesh.cells.push_back(cell);
+        nodes[dim + 1 + e] =
+            point_at(disc.vertex_nodes() + disc.fluid_edges.part_edges[p][e], index,
+                     0.5 * (Barycentric::Unit(edges[e][0]) + Barycentric::Unit(edges[e][1])));
+      for (const auto& small : split_simplices<dim>()) {
+        for (int a = 0; a <= dim; ++a) simplex[a] = nodes[static_cast<std::size_t>(small[a])];
+        picture.mesh.cells.push_back(simplex);
+      }
       continue;
     }
     for (int s = part.simplex_begin; s < part.simplex_end; ++s) {
@@ -67,6 +93,7 @@ FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc) {
       if (is_flat<dim>(vertices)) continue;
       for (int a = 0; a <= dim; ++a)
         simplex[a] = add_point(vertices[a], index, barycentric_coordinates(cut.mesh, part.cell, vertices[a]));
+      if (edges_of<dim>(vertices).determinant() < 0) std::swap(simplex[dim - 1], simplex[dim]);
       picture.mesh.cells.push_back(simplex);
     }
   }
@@ -85,16 +112,17 @@ FluidPicture<dim> moved_picture(const Discretisation<dim>& disc) {
   return picture;
 }
 
-FieldMesh<2> solid_picture(const Discretisation<2>& disc) {
-  FieldMesh<2> mesh;
+template <int dim>
+FieldMesh<dim> solid_picture(const Discretisation<dim>& disc) {
+  FieldMesh<dim> mesh;
   for (const auto& space : disc.solid_spaces) {
     const int first = static_cast<int>(mesh.points.size());
     mesh.points.insert(mesh.points.end(), space.nodes.begin(), space.nodes.end());
-    for (const auto& cell : space.cell_nodes) {
-      // Vertices 0, 1, 2; mid-points 3 on (0,1), 4 on (0,2), 5 on (1,2).
-      for (const auto& corner : {std::array{0, 3, 4}, {3, 1, 5}, {4, 5, 2}, {3, 5, 4}})
-        mesh.cells.push_back({first + cell[corner[0]], first + cell[corner[1]], first + cell[corner[2]]});
-    }
+    for (const auto& cell : space.cell_nodes)
+      for (const auto& small : split_simplices<dim>()) {
+        auto& simplex = mesh.cells.emplace_back();
+        for (int a = 0; a <= dim; ++a) simplex[a] = first + cell[static_cast<std::size_t>(small[a])];
+      }
   }
   return mesh;
 }
@@ -130,7 +158,15 @@ std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const Stat
 template bool is_flat<2>(const std::array<Point<2>, 3>&);
 template FluidPicture<2> fluid_picture(const Discretisation<2>&);
 template FluidPicture<2> moved_picture(const Discretisation<2>&);
+template FieldMesh<2> solid_picture(const Discretisation<2>&);
 template std::vector<NodalField> fluid_fields(const Discretisation<2>&, const FluidPicture<2>&, const State&);
 template std::vector<NodalField> solid_fields(const Discretisation<2>&, const State&);
+
+template bool is_flat<3>(const std::array<Point<3>, 4>&);
+template FluidPicture<3> fluid_picture(const Discretisation<3>&);
+template FluidPicture<3> moved_picture(const Discretisation<3>&);
+template FieldMesh<3> solid_picture(const Discretisation<3>&);
+template std::vector<NodalField> fluid_fields(const Discretisation<3>&, const FluidPicture<3>&, const State&);
+template std::vector<NodalField> solid_fields(const Discretisation<3>&, const State&);
 
 } // namespace undula::fom

@@ -14,10 +14,10 @@ namespace undula::fom {
 template <int dim>
 bool is_flat(const std::array<Point<dim>, dim + 1>& vertices);
 
-/// Triangles (tetrahedra) that fill the fluid, flat ones left out. Uncut elements share the points of their
-/// nodes, and are split into four through the mid-points of their edges where the velocity is quadratic; cut
-/// parts are filled by simplices with points of their own, so that a field may jump across a membrane thinner
-/// than an element.
+/// Triangles (tetrahedra) of positive orientation that fill the fluid, flat ones left out. Uncut elements
+/// share the points of their nodes, and are split through the mid-points of their edges (into four or eight)
+/// where the velocity is quadratic; cut parts are filled by simplices with points of their own, so that a
+/// field may jump across a membrane thinner than an element.
 template <int dim>
 struct FluidPicture {
   FieldMesh<dim> mesh;
@@ -32,9 +32,10 @@ FluidPicture<dim> fluid_picture(const Discretisation<dim>& disc);
 template <int dim>
 FluidPicture<dim> moved_picture(const Discretisation<dim>& disc);
 
-/// The quadratic nodes of all solids, one after the other; every element split into four triangles through
-/// its edge mid-points.
-FieldMesh<2> solid_picture(const Discretisation<2>& disc);
+/// The quadratic nodes of all solids, one after the other; every element split into four triangles, or eight
+/// tetrahedra, through its edge mid-points.
+template <int dim>
+FieldMesh<dim> solid_picture(const Discretisation<dim>& disc);
 
 /// "velocity" (cm/s) and "pressure" (dyn/cm^2) on the points of the picture.
 template <int dim>

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "fom/space/facet_axis.hpp"
 #include "fom/space/velocity_element.hpp"
 #include "rom/base/error.hpp"
 
@@ -23,19 +24,6 @@ const BoundaryCondition<dim>& condition_of(const FsiProblem<dim>& problem, int t
                      "a condition for every boundary name of the mesh",
                      "boundary names of the background mesh");
   return found->second;
-}
-
-/// Axis a facet is perpendicular to (an opening has to be aligned with a coordinate plane).
-template <int dim>
-int normal_axis(const CutMesh<dim>& cut, int facet) {
-  Point<dim> low = cut.mesh.points[cut.facets.facets[facet].points[0]], high = low;
-  for (const int p : cut.facets.facets[facet].points) {
-    low = low.cwiseMin(cut.mesh.points[p]);
-    high = high.cwiseMax(cut.mesh.points[p]);
-  }
-  int axis = 0;
-  (high - low).minCoeff(&axis);
-  return axis;
 }
 
 /// Strong conditions act only on the nodes whose own fluid part touches the boundary: a node of the wall may
@@ -244,5 +232,12 @@ template Discretisation<2> discretise(FsiProblem<2>, const CutOptions&);
 template Discretisation<2> recut(Discretisation<2>&, const Eigen::VectorXd&, const CutOptions&);
 template std::vector<Point<2>> unknown_positions(const Discretisation<2>&);
 template Ownership distribute_unknowns(const Discretisation<2>&, int);
+
+template struct Discretisation<3>;
+template void constrain_rows(const Discretisation<3>&, Eigen::VectorXd&);
+template Discretisation<3> discretise(FsiProblem<3>, const CutOptions&);
+template Discretisation<3> recut(Discretisation<3>&, const Eigen::VectorXd&, const CutOptions&);
+template std::vector<Point<3>> unknown_positions(const Discretisation<3>&);
+template Ownership distribute_unknowns(const Discretisation<3>&, int);
 
 } // namespace undula::fom

@@ -56,4 +56,9 @@ template QuadraticValues<2> quadratic_values<2>(const Eigen::Vector3d&);
 template QuadraticGradients<2> quadratic_gradients<2>(const Eigen::Vector3d&,
                                                       const Eigen::Matrix<double, 2, 3>&);
 
+template QuadraticSpace<3> build_quadratic_space<3>(const SimplexMesh<3>&);
+template QuadraticValues<3> quadratic_values<3>(const Eigen::Vector4d&);
+template QuadraticGradients<3> quadratic_gradients<3>(const Eigen::Vector4d&,
+                                                      const Eigen::Matrix<double, 3, 4>&);
+
 } // namespace undula::fom

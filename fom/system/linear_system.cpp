@@ -407,4 +407,6 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
 
 template class LinearSystem<2>;
 
+template class LinearSystem<3>;
+
 } // namespace undula::fom

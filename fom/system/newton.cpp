@@ -127,4 +127,11 @@ template int solve_newton(LinearSystem<2>&, const Discretisation<2>&, const Oper
                           const Eigen::VectorXd&, const NewtonSettings&, int, bool, Eigen::VectorXd&,
                           const OtherTerms&);
 
+template SolidResponse<3> complete_response(const Discretisation<3>&, const Operators<3>&,
+                                            const Eigen::VectorXd&, const Eigen::VectorXd&, const SolidRates&,
+                                            bool, const Eigen::VectorXd*);
+template int solve_newton(LinearSystem<3>&, const Discretisation<3>&, const Operators<3>&, const SolidMotion&,
+                          const Eigen::VectorXd&, const NewtonSettings&, int, bool, Eigen::VectorXd&,
+                          const OtherTerms&);
+
 } // namespace undula::fom

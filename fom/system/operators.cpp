@@ -118,4 +118,7 @@ void move_operators(const Discretisation<dim>& disc, Operators<dim>& operators, 
 template Operators<2> build_operators(const Discretisation<2>&, MPI_Comm, PhaseTimer&);
 template void move_operators(const Discretisation<2>&, Operators<2>&, PhaseTimer&);
 
+template Operators<3> build_operators(const Discretisation<3>&, MPI_Comm, PhaseTimer&);
+template void move_operators(const Discretisation<3>&, Operators<3>&, PhaseTimer&);
+
 } // namespace undula::fom

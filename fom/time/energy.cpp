@@ -74,4 +74,7 @@ EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& 
 template Eigen::VectorXd TimeStepper<2>::residual(const State&) const;
 template EnergyTerms TimeStepper<2>::energy(const State&, const Eigen::VectorXd&) const;
 
+template Eigen::VectorXd TimeStepper<3>::residual(const State&) const;
+template EnergyTerms TimeStepper<3>::energy(const State&, const Eigen::VectorXd&) const;
+
 } // namespace undula::fom

@@ -35,4 +35,7 @@ Point<dim> force_on_solid(const Discretisation<dim>& disc, const Operators<dim>&
 template Point<2> force_on_boundary(const Discretisation<2>&, const Eigen::VectorXd&, const std::string&);
 template Point<2> force_on_solid(const Discretisation<2>&, const Operators<2>&, const Eigen::VectorXd&, int);
 
+template Point<3> force_on_boundary(const Discretisation<3>&, const Eigen::VectorXd&, const std::string&);
+template Point<3> force_on_solid(const Discretisation<3>&, const Operators<3>&, const Eigen::VectorXd&, int);
+
 } // namespace undula::fom

@@ -100,4 +100,9 @@ template int solve_steady(const Discretisation<2>&, const Operators<2>&, double,
 template Eigen::VectorXd steady_residual(const Discretisation<2>&, const Operators<2>&,
                                          const Eigen::VectorXd&);
 
+template int solve_steady(const Discretisation<3>&, const Operators<3>&, double, int, PhaseTimer&,
+                          Eigen::VectorXd&, const LoadPath&);
+template Eigen::VectorXd steady_residual(const Discretisation<3>&, const Operators<3>&,
+                                         const Eigen::VectorXd&);
+
 } // namespace undula::fom

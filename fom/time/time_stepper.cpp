@@ -230,4 +230,8 @@ template Point<2> imposed_displacement(const Discretisation<2>&, const ImposedNo
 template State initial_state(const Discretisation<2>&);
 template class TimeStepper<2>;
 
+template Point<3> imposed_displacement(const Discretisation<3>&, const ImposedNode<3>&, double);
+template State initial_state(const Discretisation<3>&);
+template class TimeStepper<3>;
+
 } // namespace undula::fom

@@ -12,8 +12,9 @@ namespace undula::verification {
 
 /// Ratio of the extreme singular values of the free rows and columns of physical + stabilisation, rows and
 /// columns of each unknown scaled by the square root of the same positive number `scale[unknown]`.
-inline double condition_number(const Discretisation<2>& disc, const Operators<2>& operators,
-                               const Eigen::VectorXd& scale) {
+template <int dim>
+double condition_number(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                        const Eigen::VectorXd& scale) {
   std::vector<int> place(disc.unknowns(), -1);
   int size = 0;
   for (int unknown = 0; unknown < disc.unknowns(); ++unknown)

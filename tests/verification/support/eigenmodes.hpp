@@ -47,18 +47,21 @@ struct FreeUnknowns {
   }
 };
 
-/// Smallest angular frequency (rad/s) of stiffness v = omega^2 mass v and its mode, by SLEPc with shift and
-/// invert.
+/// An angular frequency (rad/s) of stiffness v = omega^2 mass v and its mode.
 struct VibrationMode {
   double omega = 0;
   Eigen::VectorXd shape; ///< natural numbering
 };
 
-inline VibrationMode first_vibration(const Discretisation<2>& disc, const Operators<2>& operators) {
+/// The `count` smallest, ascending, by SLEPc with shift and invert.
+template <int dim>
+std::vector<VibrationMode> vibrations(const Discretisation<dim>& disc, const Operators<dim>& operators,
+                                      int count) {
   const FreeUnknowns free(disc.is_constrained);
   const auto to_petsc = [&](const SparseMatrix& matrix, PetscMat& out) {
     const SparseMatrix kept = free.restrict_to_free(matrix);
-    check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, free.size(), free.size(), 60, nullptr, out.out()), "matrix");
+    check_petsc(MatCreateSeqAIJ(PETSC_COMM_SELF, free.size(), free.size(), 30 * dim, nullptr, out.out()),
+                "matrix");
     check_petsc(MatSetOption(out.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE), "matrix option");
     for (int row = 0; row < kept.outerSize(); ++row)
       for (SparseMatrix::InnerIterator entry(kept, row); entry; ++entry)
@@ -77,6 +80,7 @@ inline VibrationMode first_vibration(const Discretisation<2>& disc, const Operat
   check_petsc(EPSSetProblemType(solver.get(), EPS_GHEP), "problem type");
   check_petsc(EPSSetWhichEigenpairs(solver.get(), EPS_TARGET_MAGNITUDE), "which");
   check_petsc(EPSSetTarget(solver.get(), 0.0), "target");
+  check_petsc(EPSSetDimensions(solver.get(), count, PETSC_DEFAULT, PETSC_DEFAULT), "number of modes");
   check_petsc(EPSSetTolerances(solver.get(), 1e-10, 500), "tolerance");
   ST transform = nullptr;
   check_petsc(EPSGetST(solver.get(), &transform), "transform");
@@ -91,17 +95,25 @@ inline VibrationMode first_vibration(const Discretisation<2>& disc, const Operat
   check_petsc(EPSSolve(solver.get()), "eigenvalues");
   PetscInt found = 0;
   check_petsc(EPSGetConverged(solver.get(), &found), "converged");
-  if (found < 1) throw std::runtime_error("SLEPc found no eigenvalue");
+  if (found < count) throw std::runtime_error("SLEPc found too few eigenvalues");
   PetscVec vector;
   check_petsc(MatCreateVecs(stiffness.get(), vector.out(), nullptr), "vector");
-  double real = 0, imaginary = 0;
-  check_petsc(EPSGetEigenpair(solver.get(), 0, &real, &imaginary, vector.get(), nullptr), "eigenpair");
-  Eigen::VectorXd shape(free.size());
-  const double* values = nullptr;
-  check_petsc(VecGetArrayRead(vector.get(), &values), "reading");
-  for (int i = 0; i < free.size(); ++i) shape[i] = values[i];
-  check_petsc(VecRestoreArrayRead(vector.get(), &values), "reading");
-  return {std::sqrt(real), free.extend(shape)};
+  std::vector<VibrationMode> modes;
+  for (int k = 0; k < count; ++k) {
+    double real = 0, imaginary = 0;
+    check_petsc(EPSGetEigenpair(solver.get(), k, &real, &imaginary, vector.get(), nullptr), "eigenpair");
+    Eigen::VectorXd shape(free.size());
+    const double* values = nullptr;
+    check_petsc(VecGetArrayRead(vector.get(), &values), "reading");
+    for (int i = 0; i < free.size(); ++i) shape[i] = values[i];
+    check_petsc(VecRestoreArrayRead(vector.get(), &values), "reading");
+    modes.push_back({std::sqrt(real), free.extend(shape)});
+  }
+  return modes;
+}
+
+inline VibrationMode first_vibration(const Discretisation<2>& disc, const Operators<2>& operators) {
+  return vibrations(disc, operators, 1).front();
 }
 
 /// Eigenvalue s (1/s) and vector of the coupled, linear problem (s mass + physical + stabilisation + damping

@@ -17,17 +17,18 @@ struct FlowErrors {
   double pressure_l2 = 0;
 };
 
-inline FlowErrors flow_errors(const Discretisation<2>& disc, const Eigen::VectorXd& x,
-                              const ManufacturedFlow& flow) {
-  const auto rule = reference_rule<2>(6);
+/// Velocity, its gradient and pressure at a point are exact(point).velocity, .gradient and .pressure.
+template <int dim, class Exact>
+FlowErrors flow_errors_of(const Discretisation<dim>& disc, const Eigen::VectorXd& x, Exact&& exact_at) {
+  const auto rule = reference_rule<dim>(6);
   double volume = 0, mean_error = 0, mean_exact = 0;
   double velocity = 0, gradient = 0, pressure = 0, velocity_norm = 0, gradient_norm = 0, pressure_norm = 0;
   for (int part = 0; part < static_cast<int>(disc.cut.parts.size()); ++part) {
     const auto geometry = part_geometry(disc, part);
-    for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<2>& point, double w) {
-      const auto exact = sample(flow, point);
-      const auto [field, discrete_gradient] = sample_velocity<2>(disc, part, geometry.gradients, lambda, x);
-      const double difference = sample_pressure<2>(disc, part, lambda, x) - exact.pressure;
+    for_each_point(disc, part, geometry, rule, [&](const auto& lambda, const Point<dim>& point, double w) {
+      const auto exact = exact_at(point);
+      const auto [field, discrete_gradient] = sample_velocity<dim>(disc, part, geometry.gradients, lambda, x);
+      const double difference = sample_pressure<dim>(disc, part, lambda, x) - exact.pressure;
       volume += w;
       mean_error += w * difference;
       mean_exact += w * exact.pressure;
@@ -43,6 +44,11 @@ inline FlowErrors flow_errors(const Discretisation<2>& disc, const Eigen::Vector
   pressure_norm -= mean_exact * mean_exact / volume;
   return {std::sqrt(velocity / velocity_norm), std::sqrt(gradient / gradient_norm),
           std::sqrt(pressure / pressure_norm)};
+}
+
+inline FlowErrors flow_errors(const Discretisation<2>& disc, const Eigen::VectorXd& x,
+                              const ManufacturedFlow& flow) {
+  return flow_errors_of(disc, x, [&](const Point<2>& point) { return sample(flow, point); });
 }
 
 } // namespace undula::verification
