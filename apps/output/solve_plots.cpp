@@ -30,6 +30,25 @@ std::vector<Outline> solid_outlines(const FieldMesh<2>& solids, const NodalField
   return outlines;
 }
 
+/// Von Mises' stress on the displaced solids.
+void plot_stress(const std::filesystem::path& folder, const LevelView& view, const State& state,
+                 const std::string& title) {
+  const auto fields = view.solid_fields(state);
+  const auto& moved = field_named(fields, "displacement").values;
+  std::vector<Eigen::Vector2d> points = view.solids.points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] += Eigen::Vector2d(moved[2 * i], moved[2 * i + 1]);
+  }
+  constexpr double dyn_per_cm2_per_MPa = 1e7;
+  std::vector<double> stress = field_named(fields, "von_mises").values;
+  for (double& value : stress) {
+    value /= dyn_per_cm2_per_MPa;
+  }
+  FieldOnTriangles field{points, view.solids.cells, stress, "von Mises' stress (MPa)"};
+  if (view.rows.per_depth) field.axes = {"x (cm)", "y (cm)"};
+  plot_field(folder / "stress.png", title, field, {});
+}
+
 /// Box around the membrane, a little higher than its flanges are apart.
 struct Window {
   Eigen::Vector2d low, high;
@@ -233,7 +252,9 @@ DrawnRun drawn_run(const RunDirectory& run) {
 
 void plot_run(const DrawnRun& run, const Scene& scene, const State& state) {
   if (scene.problem.general) {
-    plot_state(run.folder, run.view, state, scene.name + ", t = " + plain_number(state.time) + " s");
+    const std::string title = scene.name + ", t = " + plain_number(state.time) + " s";
+    if (has_fluid(scene.problem.domain)) plot_state(run.folder, run.view, state, title);
+    if (!run.view.solids.cells.empty()) plot_stress(run.folder, run.view, state, title);
     return;
   }
   const auto& point = scene.operating_point;

@@ -1,12 +1,17 @@
 #include "fom/levels/finite_element_level.hpp"
 
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "fom/coupling/moving_stepper.hpp"
 #include "fom/output/visual_mesh.hpp"
 #include "fom/scene/scene_time.hpp"
+#include "rom/base/error.hpp"
 
 namespace undula::fom {
 namespace {
@@ -18,24 +23,55 @@ Observation seen_at(const PreparedScene& prepared, const TimeStepper<2>& stepper
   return observe(prepared.disc, prepared.operators, stepper, prepared.observation, state);
 }
 
-/// The domain of the fluid is that of rest.
+/// The domain of the fluid is that of rest. Steps with loads or contact on skins are taken in parts where
+/// they fail.
 class MarchAtRest final : public Marcher {
 public:
   MarchAtRest(const PreparedScene& prepared, const Scene& scene, PhaseTimer& timer)
       : prepared_(prepared),
+        settings_(scene.time),
+        dt_(time_step(scene)),
         timer_(timer),
-        stepper_(prepared.disc, prepared.operators, scene.time.scheme, time_step(scene),
-                 scene.time.factor_every, timer, scene.time.newton, scene.time.convection) {}
+        most_parts_(has_skin_forces(prepared.disc.problem) ? 1 << scene.time.motion.max_halvings : 1) {
+    prepare(1);
+  }
 
   Observation advance(State& state) override {
-    stepper_.advance(state);
-    return seen_at(prepared_, stepper_, state, timer_);
+    const State before = state;
+    const double end = (before.step + 1) * dt_;
+    // After parts, the step is tried in half as many.
+    int parts = before.last_step > 0 ? static_cast<int>(std::lround(dt_ / before.last_step)) / 2 : 1;
+    for (parts = std::clamp(parts, 1, most_parts_);; parts *= 2) {
+      if (parts != parts_) prepare(parts);
+      try {
+        for (int part = 1; part <= parts; ++part) {
+          stepper_->advance_to(part == parts ? end : before.time + dt_ * part / parts, state);
+          if (most_parts_ > 1) state.last_step = dt_ / parts;
+        }
+        state.step = before.step + 1;
+        return seen_at(prepared_, *stepper_, state, timer_);
+      } catch (const NumericsError& error) {
+        state = before;
+        if (2 * parts > most_parts_) throw;
+        if (prepared_.operators.rank == 0)
+          spdlog::warn("step {} in {} parts: {}", before.step + 1, 2 * parts, error.what());
+      }
+    }
   }
 
 private:
+  void prepare(int parts) {
+    stepper_.emplace(prepared_.disc, prepared_.operators, settings_.scheme, dt_ / parts,
+                     settings_.factor_every, timer_, settings_.newton, settings_.convection);
+    parts_ = parts;
+  }
+
   const PreparedScene& prepared_;
+  SteppingSettings settings_;
+  double dt_; ///< s
   PhaseTimer& timer_;
-  TimeStepper<2> stepper_;
+  int most_parts_, parts_ = 0;
+  std::optional<TimeStepper<2>> stepper_;
 };
 
 /// The domain of the fluid follows the solids.

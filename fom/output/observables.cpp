@@ -168,7 +168,7 @@ Observation observe(const Discretisation<dim>& disc, const Operators<dim>& opera
   Eigen::VectorXd residual;
   if (whole) {
     residual = stepper.residual(state);
-    seen.general = observe_general(plan.general, disc, operators, residual, state);
+    seen.general = observe_general(plan.general, disc, operators, residual, stepper.contact_reports(), state);
     seen.energy = stepper.energy(state, residual);
   } else {
     seen.energy = unknown_energy;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fom/output/solid_stress.hpp"
 #include "fom/space/velocity_element.hpp"
 
 namespace undula::fom {
@@ -152,7 +153,8 @@ std::vector<NodalField> solid_fields(const Discretisation<dim>& disc, const Stat
     return std::vector<double>(all.data() + disc.fluid_unknowns(), all.data() + disc.unknowns());
   };
   return {{"displacement", "cm", dim, solid_part(state.d[0])},
-          {"velocity", "cm/s", dim, solid_part(state.x[0])}};
+          {"velocity", "cm/s", dim, solid_part(state.x[0])},
+          {"von_mises", "dyn/cm^2", 1, von_mises_stress<dim>(disc, state.d[0])}};
 }
 
 template bool is_flat<2>(const std::array<Point<2>, 3>&);

@@ -10,16 +10,13 @@
 #include "fom/actuator/actuator.hpp"
 #include "fom/fom.hpp"
 #include "fom/problem/conditions.hpp"
+#include "fom/problem/fields.hpp"
 #include "fom/problem/materials.hpp"
+#include "fom/problem/skin_conditions.hpp"
 #include "fom/problem/stabilisation_weights.hpp"
 #include "geometry/mesh/simplex_mesh.hpp"
 
 namespace undula::fom {
-
-/// Vector field of position (cm) and time (s).
-template <int dim>
-using VectorField = std::function<Point<dim>(const Point<dim>&, double)>;
-using TimeFunction = std::function<double(double)>;
 
 /// Condition on a named part of the background's boundary.
 template <int dim>
@@ -66,6 +63,9 @@ struct FsiProblem {
   FluidProperties fluid;
   SimplexMesh<dim> background;
   std::vector<SolidBody<dim>> solids;
+  std::vector<SkinLoad<dim>> loads;
+  std::vector<RigidBody<dim>> rigid;
+  std::vector<ContactPair> pairs;
   std::optional<DrivenHolder> holder;                     ///< empty: the solids' imposed displacements hold
   std::map<std::string, BoundaryCondition<dim>> boundary; ///< by name; every boundary name needs one
   VectorField<dim> body_force;                            ///< dyn/cm^3 on the fluid, empty: zero

@@ -145,9 +145,73 @@ std::vector<SceneKey> body_keys(Entry entry) {
 template <typename Entry>
 std::vector<SceneKey> refinement_keys(Entry entry) {
   return {
+      {"body", "", "name of the body whose elements they are, of general scenes; left out: the fluid's",
+       shapes_state, NameKey{FIELD(body)}},
       {"box_mm", "mm", "lowest and highest corner", shapes_state, PositionListKey{FIELD(box), cm_per_mm}},
-      {"size_mm", "mm", "element size of the fluid in the box", shapes_state,
+      {"size_mm", "mm", "element size in the box", shapes_state,
        RealKey{FIELD(size), cm_per_mm, above_to(0, 1e6), {}}},
+  };
+}
+
+template <typename Entry>
+std::vector<SceneKey> load_keys(Entry entry) {
+  return {
+      {"on", "", "name of the body", shapes_state, NameKey{FIELD(on)}},
+      {"where", "", "the load acts at rest positions where this is not 0; left out: on all of the skin",
+       shapes_state, ExpressionKey{FIELD(where), ""}},
+      {"pressure_mmHg", "mmHg", "by rest position and time; pushes on the displaced skin along its normal",
+       shapes_state, ExpressionKey{FIELD(pressure), ""}},
+      {"traction_dyn_per_cm2", "dyn_per_cm2",
+       "force per area at rest, by rest position and time; keeps its direction", shapes_state,
+       ExpressionPairKey{FIELD(traction)}},
+  };
+}
+
+template <typename Entry>
+std::vector<SceneKey> rigid_keys(Entry entry) {
+  std::vector<SceneKey> keys;
+  add_shape_keys(keys, entry);
+  const std::vector<SceneKey> others = {
+      {"line_mm", "mm",
+       "two points, in place of a shape: all that lies on the right of the way from the first to the second",
+       shapes_state, PositionListKey{FIELD(line), cm_per_mm}},
+      {"material", "", "of a circle, where it is rigid; `outside`: a round bore", shapes_state,
+       choice<>(FIELD(hollow),
+                std::vector<std::pair<const char*, bool>>{{"inside", false}, {"outside", true}}, "inside")},
+      {"displacement_mm", "mm", "of time alone; left out: none. In axisymmetric space along z alone",
+       shapes_state, ExpressionPairKey{FIELD(displacement)}},
+      {"angle_deg", "deg", "it is turned by, counter-clockwise, of time alone; plane space", shapes_state,
+       ExpressionKey{FIELD(angle), ""}},
+      {"about_mm", "mm",
+       "one point, [[0.0, 0.0]], that it turns about before it is displaced; left out: the centre of the "
+       "circle, or the origin",
+       shapes_state, PositionListKey{FIELD(about), cm_per_mm}},
+  };
+  keys.insert(keys.end(), others.begin(), others.end());
+  return keys;
+}
+
+template <typename Entry>
+std::vector<SceneKey> pair_keys(Entry entry) {
+  return {
+      {"between", "",
+       "two names: a body, and another body, a rigid body or the same body again (its skin may touch itself)",
+       shapes_state, NameListKey{FIELD(between)}},
+      {"film_mm", "mm", "distance that is kept between the skins", shapes_state,
+       RealKey{FIELD(film), cm_per_mm, from_to(0, 1e6), 0.0}},
+      {"stiffness_dyn_per_cm3", "dyn_per_cm3",
+       "pressure per depth in the film, per area at rest; 0: 10 times Young's modulus over the element size, "
+       "of "
+       "the stiffer body",
+       shapes_state, RealKey{FIELD(stiffness), 1, from_to(0, 1e30), 0.0}},
+      {"deepest_mm", "mm",
+       "a step that ends deeper in the film fails; 0: half of the film, or a tenth of an element without one",
+       shapes_state, RealKey{FIELD(deepest), cm_per_mm, from_to(0, 1e6), 0.0}},
+      {"friction", "", "Coulomb's coefficient", shapes_state,
+       RealKey{FIELD(friction), 1, from_to(0, 100), 0.0}},
+      {"creep_cm_per_s", "cm_per_s",
+       "slip speed at which friction reaches 0.71 of its limit; needed with friction", shapes_state,
+       RealKey{FIELD(creep), 1, from_to(0, 1e6), 0.0}},
   };
 }
 
@@ -176,6 +240,9 @@ void with_entries(ProblemType& problem, std::string_view kind, const Use& use) {
   if (kind == "boundary") use(problem.boundaries);
   if (kind == "body") use(problem.bodies);
   if (kind == "refine") use(problem.refinements);
+  if (kind == "load") use(problem.loads);
+  if (kind == "rigid") use(problem.rigid);
+  if (kind == "pair") use(problem.pairs);
   if (kind == "point") use(problem.points);
   if (kind == "force") use(problem.forces);
 }
@@ -190,6 +257,12 @@ std::vector<SceneKey> make_keys(const std::string& kind, const std::string& name
     keys = body_keys([name](Scene & scene) -> auto& { return scene.problem.bodies.at(name); });
   else if (kind == "refine")
     keys = refinement_keys([name](Scene & scene) -> auto& { return scene.problem.refinements.at(name); });
+  else if (kind == "load")
+    keys = load_keys([name](Scene & scene) -> auto& { return scene.problem.loads.at(name); });
+  else if (kind == "rigid")
+    keys = rigid_keys([name](Scene & scene) -> auto& { return scene.problem.rigid.at(name); });
+  else if (kind == "pair")
+    keys = pair_keys([name](Scene & scene) -> auto& { return scene.problem.pairs.at(name); });
   else if (kind == "point")
     keys = point_keys([name](Scene & scene) -> auto& { return scene.problem.points.at(name); });
   else if (kind == "force")
@@ -211,7 +284,7 @@ std::vector<SceneKey> make_keys(const std::string& kind, const std::string& name
 } // namespace
 
 std::span<const EntryKind> entry_kinds() {
-  static const std::array<EntryKind, 6> kinds = {{
+  static const std::array<EntryKind, 9> kinds = {{
       {"boundary",
        "Conditions on a side of the domain or the edge of a hole. Those without a section are walls at "
        "rest."},
@@ -221,9 +294,15 @@ std::span<const EntryKind> entry_kinds() {
        "domain "
        "or into a hole: only what lies in the fluid counts there."},
       {"refine",
-       "Boxes in which the fluid's elements are small, in scenes with a domain or a pump's profile. `--set "
+       "Boxes in which elements are small, in scenes with a domain, bodies or a pump's profile. `--set "
        "refine.NAME.box_mm=...` adds one.",
        Scope::any, true},
+      {"load", "Loads on the skin of a body, for instance a pressure on a dry side."},
+      {"rigid", "Rigid bodies that bodies may touch; how they move is stated. They displace no fluid."},
+      {"pair",
+       "What may touch: columns NAME_load_..., NAME_force_... (on the first), NAME_pressure_max_..., "
+       "NAME_length_mm, "
+       "NAME_penetration_mm, NAME_power_..., NAME_friction_power_..."},
       {"point",
        "Points that are followed: columns NAME_displacement_... of a body, NAME_pressure_mmHg and "
        "NAME_velocity_... of the fluid."},

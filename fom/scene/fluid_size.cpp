@@ -88,6 +88,7 @@ FluidSize::FluidSize(const ProblemStatement& problem, const TaggedPolygon& domai
       keys_{"domain.size_mm"},
       edges_(sized_edges(problem, domain, axisymmetric, keys_), growth_, to_edge) {
   for (const auto& [name, box] : problem.refinements) {
+    if (!box.body.empty()) continue;
     boxes_.push_back(
         {{point_of(box.box[0]), point_of(box.box[1]), box.size}, static_cast<int>(keys_.size())});
     keys_.push_back("refine." + name + ".size_mm");

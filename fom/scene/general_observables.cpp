@@ -20,6 +20,7 @@ namespace {
 
 constexpr double dyn_per_cm_per_N_per_m = 1000;
 constexpr double dyn_per_mN = 100;
+constexpr double erg_per_uJ = 10, erg_per_s_per_mW = 1e4;
 constexpr double on_edge = 1e-9; ///< barycentric coordinates that count as zero
 
 /// Velocity and pressure at x; none where there is no fluid.
@@ -104,6 +105,22 @@ GeneralObservables plan_general_observables(const Discretisation<2>& disc, const
         add_column(name + "_force_" + axis + "_N_per_m", dyn_per_cm_per_N_per_m);
     }
   }
+  // Pairs of the problem are in the order of their names, too.
+  const std::string per_depth = axisymmetric ? "" : "_per_cm";
+  plan.pairs = static_cast<int>(scene.problem.pairs.size());
+  for (const auto& [name, statement] : scene.problem.pairs) {
+    const std::string force_unit = axisymmetric ? "_mN" : "_N_per_m";
+    const double dyn_per_unit = axisymmetric ? dyn_per_mN : dyn_per_cm_per_N_per_m;
+    add_column(name + "_load" + force_unit, dyn_per_unit);
+    for (const int component : plan.components)
+      add_column(name + "_force_" + axes[static_cast<std::size_t>(component)] + force_unit, dyn_per_unit);
+    add_column(name + "_pressure_max_dyn_per_cm2", 1);
+    add_column(name + "_length_mm", units::cm_per_mm);
+    add_column(name + "_penetration_mm", units::cm_per_mm);
+    add_column(name + "_energy_uJ" + per_depth, erg_per_uJ);
+    add_column(name + "_power_mW" + per_depth, erg_per_s_per_mW);
+    add_column(name + "_friction_power_mW" + per_depth, erg_per_s_per_mW);
+  }
   for (const auto& [name, statement] : scene.problem.points) {
     if (statement.body.empty()) continue;
     plan.solid_points.push_back(solid_point(disc, solid_named(disc, statement.body),
@@ -130,7 +147,7 @@ GeneralObservables plan_general_observables(const Discretisation<2>& disc, const
 
 std::vector<double> observe_general(const GeneralObservables& plan, const Discretisation<2>& disc,
                                     const Operators<2>& operators, const Eigen::VectorXd& residual,
-                                    const State& state) {
+                                    std::span<const PairReport<2>> pairs, const State& state) {
   std::vector<double> values;
   const auto& x = state.x[0];
   for (const auto& name : plan.openings) values.push_back(operators.openings.at(name).dot(x));
@@ -139,6 +156,14 @@ std::vector<double> observe_general(const GeneralObservables& plan, const Discre
     for (const int solid : force.solids) sum += force_on_solid<2>(disc, operators, x, solid);
     for (const auto& name : force.boundaries) sum += force_on_boundary<2>(disc, residual, name);
     for (const int component : plan.components) values.push_back(sum[component]);
+  }
+  for (int p = 0; p < plan.pairs; ++p) {
+    const auto& pair = pairs[static_cast<std::size_t>(p)];
+    values.push_back(pair.load);
+    for (const int component : plan.components) values.push_back(pair.force[component]);
+    for (const double value :
+         {pair.pressure, pair.length, pair.penetration, pair.energy, pair.power, pair.friction_power})
+      values.push_back(value);
   }
   const Eigen::VectorXd solid_displacement = state.d[0].tail(disc.solid_unknowns());
   for (const auto& point : plan.solid_points) {

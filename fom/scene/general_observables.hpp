@@ -1,6 +1,8 @@
 // What a scene asks to be observed: flow through openings, forces, and points that are followed.
 #pragma once
 
+#include <span>
+
 #include "fom/scene/scene.hpp"
 #include "fom/time/time_stepper.hpp"
 
@@ -24,12 +26,13 @@ struct SolidPoint {
   std::vector<double> weights;
 };
 
-/// Columns in the order of `columns`: openings, forces, points of solids, points of the fluid.
+/// Columns in the order of `columns`: openings, forces, contact pairs, points of solids, points of the fluid.
 struct GeneralObservables {
   std::vector<GeneralColumn> columns;
   std::vector<std::string> openings;
   std::vector<GeneralForce> forces;
   std::vector<int> components; ///< of a force that are reported
+  int pairs = 0;               ///< of contact
   std::vector<SolidPoint> solid_points;
   std::vector<Point<2>> fluid_points; ///< cm
 };
@@ -39,9 +42,10 @@ struct GeneralObservables {
 GeneralObservables plan_general_observables(const Discretisation<2>& disc, const Scene& scene);
 
 /// One value per column, cgs, of the step that ended in `state` and left this `residual`
-/// (TimeStepper::residual). Points of the fluid that a solid covers give nan. Collective.
+/// (TimeStepper::residual) and this contact (TimeStepper::contact_reports). Points of the fluid that a solid
+/// covers give nan. Collective.
 std::vector<double> observe_general(const GeneralObservables& plan, const Discretisation<2>& disc,
                                     const Operators<2>& operators, const Eigen::VectorXd& residual,
-                                    const State& state);
+                                    std::span<const PairReport<2>> pairs, const State& state);
 
 } // namespace undula::fom

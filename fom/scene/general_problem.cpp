@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "fom/fom.hpp"
+#include "fom/scene/body_size.hpp"
 #include "fom/scene/common_problem.hpp"
-#include "fom/scene/expression.hpp"
 #include "fom/scene/fluid_size.hpp"
+#include "fom/scene/scene_functions.hpp"
 #include "fom/scene/scene_time.hpp"
 #include "fom/scene/shape_outline.hpp"
+#include "fom/scene/skin_statement.hpp"
 #include "geometry/mesh/polygon_mesh.hpp"
 #include "geometry/mesh/polygons.hpp"
 #include "rom/base/error.hpp"
@@ -29,58 +31,26 @@ SimplexMesh<2> domain_mesh(const ProblemStatement& problem, bool axisymmetric) {
       polygon, [&](const Point<2>& x) { return size(x); }, min_angle);
 }
 
-SimplexMesh<2> body_mesh(const BodyStatement& body, bool axisymmetric) {
+SimplexMesh<2> body_mesh(const ProblemStatement& problem, const std::string& name, bool axisymmetric) {
+  const BodyStatement& body = problem.bodies.at(name);
+  const BodySize size(problem, name);
   TaggedPolygon polygon;
   polygon.names = {"skin"};
-  polygon.points = body_corners(body, axisymmetric);
+  polygon.points = size.divided(body, body_corners(body, axisymmetric));
   if (polygon_area(polygon.points) < 0) std::reverse(polygon.points.begin(), polygon.points.end());
   polygon.tags.assign(polygon.points.size(), 0);
   if (body.shape.inner_radius > 0)
-    polygon.holes.push_back({circle(body.shape.centre, body.shape.inner_radius, body.size), 0});
+    polygon.holes.push_back(
+        {size.divided(body, circle(body.shape.centre, body.shape.inner_radius, body.size)), 0});
   if (body.line.size() > 1) {
     polygon.inner_paths.emplace_back();
     for (const auto& corner : body.line) polygon.inner_paths.back().push_back(point_of(corner));
   }
-  const double size = body.size;
   return mesh_polygon(
-      polygon, [size](const Point<2>&) { return size; }, min_angle);
+      polygon, [&](const Point<2>& x) { return size(x); }, min_angle);
 }
 
-/// Functions made of the expressions of one scene.
-class Functions {
-public:
-  explicit Functions(const Scene& scene) : scene_(scene) {}
-
-  Expression expression(const std::string& text, const std::string& where) const {
-    return {text, scene_.space, scene_.problem.constants, where};
-  }
-  /// Empty for expressions that are left out; `cgs_per_unit` times their value.
-  VectorField<2> vector(const std::array<std::string, 2>& texts, double cgs_per_unit,
-                        const std::string& where) const {
-    if (texts[0].empty()) return {};
-    return [first = expression(texts[0], where), second = expression(texts[1], where), cgs_per_unit](
-               const Point<2>& x, double t) -> Point<2> {
-      const double a = units::length_to_mm(x[0]), b = units::length_to_mm(x[1]);
-      return cgs_per_unit * Point<2>(first(a, b, t), second(a, b, t));
-    };
-  }
-  TimeFunction time(const std::string& text, double cgs_per_unit, const std::string& where) const {
-    if (text.empty()) return {};
-    return
-        [value = expression(text, where), cgs_per_unit](double t) { return cgs_per_unit * value(0, 0, t); };
-  }
-  std::function<bool(const Point<2>&)> region(const std::string& text, const std::string& where) const {
-    if (text.empty()) return {};
-    return [value = expression(text, where)](const Point<2>& x) {
-      return value(units::length_to_mm(x[0]), units::length_to_mm(x[1]), 0) != 0;
-    };
-  }
-
-private:
-  const Scene& scene_;
-};
-
-BoundaryCondition<2> condition_of(const BoundaryStatement& statement, const Functions& functions,
+BoundaryCondition<2> condition_of(const BoundaryStatement& statement, const SceneFunctions& functions,
                                   const std::string& where) {
   using Kind = BoundaryStatement::Kind;
   BoundaryCondition<2> condition;
@@ -143,11 +113,12 @@ SolidModel model_of(BodyStatement::Law law) {
   return SolidModel::linear;
 }
 
-SolidBody<2> body_of(const std::string& name, const BodyStatement& statement, bool axisymmetric,
-                     const Functions& functions, const std::string& where) {
+SolidBody<2> body_of(const std::string& name, const ProblemStatement& problem, bool axisymmetric,
+                     const SceneFunctions& functions, const std::string& where) {
+  const BodyStatement& statement = problem.bodies.at(name);
   SolidBody<2> body;
   body.name = name;
-  body.mesh = body_mesh(statement, axisymmetric);
+  body.mesh = body_mesh(problem, name, axisymmetric);
   body.properties = {statement.density,      statement.young,        statement.poisson,
                      statement.damping_time, statement.mass_damping, statement.stiffness_damping};
   body.model = model_of(statement.law);
@@ -174,7 +145,7 @@ SolidBody<2> body_of(const std::string& name, const BodyStatement& statement, bo
 
 FsiProblem<2> general_problem(const Scene& scene) {
   const ProblemStatement& statement = scene.problem;
-  const Functions functions(scene);
+  const SceneFunctions functions(scene);
   auto problem = problem_without_meshes(scene);
   problem.stabilisation = weights_in_force(scene, 0); // 0: nothing drives, see stated_speed
   problem.body_force = functions.vector(statement.body_force, 1, scene.file.string() + ", section [domain]");
@@ -191,8 +162,9 @@ FsiProblem<2> general_problem(const Scene& scene) {
     if (stated.kind == BoundaryStatement::Kind::opening) problem.pin_pressure = false;
   }
   for (const auto& [name, body] : statement.bodies)
-    problem.solids.push_back(
-        body_of(name, body, axisymmetric, functions, scene.file.string() + ", section [body." + name + "]"));
+    problem.solids.push_back(body_of(name, statement, axisymmetric, functions,
+                                     scene.file.string() + ", section [body." + name + "]"));
+  add_skin_conditions(scene, problem);
   return problem;
 }
 

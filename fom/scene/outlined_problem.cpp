@@ -82,12 +82,14 @@ private:
 
   void check_bodies_inside() const {
     for (std::size_t i = 0; i < problem_.bodies.size(); ++i) {
+      if (problem_.bodies[i].may_be_dry) continue;
       const double wet = area([&](const auto& part) { return in(part, i) && part.inside[0] != 0; });
       if (wet <= negligible * body_area(i))
         throw InputError("a body lies outside of the fluid",
                          "\"" + problem_.bodies[i].name + "\" of " + square_mm(body_area(i)) +
                              " shares nothing with the domain",
-                         "a body that lies in the domain at least in part, outside of holes; lengths in mm",
+                         "a body that lies in the domain at least in part, outside of holes, or has a load "
+                         "or a pair; lengths in mm",
                          problem_.bodies[i].where);
     }
   }

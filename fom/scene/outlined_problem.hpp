@@ -24,6 +24,7 @@ struct OutlinedBody {
   std::vector<Segment<2>> outline; ///< with its holes
   bool still = false;              ///< held as a whole and not moved
   std::string where;               ///< for messages
+  bool may_be_dry = false;         ///< it has a load or may touch something: it need not be in the fluid
 };
 
 struct OutlinedProblem {
@@ -38,7 +39,7 @@ struct OutlinedProblem {
 /// and out; 0 where nothing does.
 using NetInflow = std::function<double(const std::vector<int>& segments)>;
 
-/// Refuses (InputError) bodies that lie wholly outside of the fluid, or over one another in it (in vacuo:
+/// Refuses (InputError) bodies that lie wholly outside of the fluid without a reason, or over one another in it (in vacuo:
 /// anywhere), no fluid left between them, openings and inflows that they cover, and parts of the fluid that
 /// are closed all around by walls and still bodies although fluid flows into them, or beside others, where
 /// nothing says their pressure. Returns the overlay of the fluid (region 0) and the bodies.

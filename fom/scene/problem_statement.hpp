@@ -70,10 +70,39 @@ struct BodyStatement {
   std::array<std::string, 2> velocity;     ///< cm/s, at t = 0
 };
 
-/// A box in which the fluid's elements are small.
+/// A box in which elements are small: those of a body, or of the fluid.
 struct RefinementStatement {
+  std::string body;          ///< "" : the fluid
   std::vector<Position> box; ///< lowest and highest corner
   double size = 0;           ///< cm
+};
+
+/// A load on the skin of a body.
+struct LoadStatement {
+  std::string on;
+  std::string where;                   ///< not 0 where it acts, at rest; "": all of the skin
+  std::string pressure;                ///< mmHg
+  std::array<std::string, 2> traction; ///< dyn/cm^2
+};
+
+/// A rigid body: a shape, or all that lies on the right of a line.
+struct RigidStatement {
+  ShapeStatement shape;
+  std::vector<Position> line;              ///< two points
+  bool hollow = false;                     ///< of a circle: the material is outside
+  std::array<std::string, 2> displacement; ///< mm
+  std::string angle;                       ///< degrees
+  std::vector<Position> about;             ///< one point; none: centre of the circle, or the origin
+};
+
+/// Two bodies that may touch.
+struct PairStatement {
+  std::vector<std::string> between; ///< two names; twice the same: a body that may touch itself
+  double film = 0;                  ///< cm
+  double stiffness = 0;             ///< dyn/cm^3; 0: derived
+  double deepest = 0;               ///< cm; 0: derived
+  double friction = 0;              ///< -
+  double creep = 0;                 ///< cm/s
 };
 
 /// A point that is followed: of a body (displacement), or of the fluid (pressure, velocity).
@@ -96,6 +125,9 @@ struct ProblemStatement {
   std::map<std::string, BoundaryStatement> boundaries;
   std::map<std::string, BodyStatement> bodies;
   std::map<std::string, RefinementStatement> refinements;
+  std::map<std::string, LoadStatement> loads;
+  std::map<std::string, RigidStatement> rigid;
+  std::map<std::string, PairStatement> pairs;
   std::map<std::string, PointStatement> points;
   std::map<std::string, ForceStatement> forces;
 };

@@ -5,6 +5,7 @@
 #include "fom/scene/entry_table.hpp"
 #include "fom/scene/key_place.hpp"
 #include "fom/scene/scene_table.hpp"
+#include "fom/scene/skin_statement.hpp"
 #include "fom/scene/statement_geometry.hpp"
 #include "rom/base/error.hpp"
 
@@ -165,6 +166,16 @@ void check_refinements(const Scene& scene, const std::string& where) {
       throw InputError("a box of refinement is not one", std::to_string(box.box.size()) + " points",
                        "two points, the lowest and the highest corner", at);
     }
+    if (!box.body.empty() && !scene.problem.bodies.contains(box.body)) {
+      throw InputError(
+          "a box refines an unknown body", in_quotes(box.body),
+          scene.problem.general ? "the name of a [body.NAME]" : "no such key: a pump has no bodies",
+          place_of_key(scene, "refine." + name + ".body", where));
+    }
+    if (scene.problem.general && box.body.empty() && !has_fluid(scene.problem.domain)) {
+      throw InputError("a box refines the fluid, and there is none", "[refine." + name + "] without \"body\"",
+                       "\"body\", or a domain", at);
+    }
     const bool no_mesh = scene.space == Space::thin_gap || scene.space == Space::long_wave;
     if (!scene.problem.general && (scene.profile.empty() || no_mesh)) {
       throw InputError("there is no mesh to refine in a box",
@@ -195,6 +206,7 @@ void check_statement(const Scene& scene, const std::string& where) {
   check_boundaries(scene.problem, where);
   check_bodies(scene.problem, where);
   check_observed(scene.problem, where);
+  check_skin_statement(scene, where);
   if (scene.time.end < scene.time.step) {
     throw InputError("the run ends before its first step", "end_s = " + shortest_number(scene.time.end),
                      "at least step_s = " + shortest_number(scene.time.step),

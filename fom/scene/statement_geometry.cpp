@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fom/scene/body_size.hpp"
 #include "fom/scene/expression.hpp"
 #include "fom/scene/fluid_size.hpp"
 #include "fom/scene/key_place.hpp"
@@ -252,10 +253,20 @@ private:
              polygon_sides(circle(body.shape.centre, body.shape.inner_radius, body.size, circle_corners)))
           one.outline.push_back(edge);
       one.still = held_as_a_whole(name, body, one.outline) && body.displacement[0].empty();
+      one.may_be_dry = acts_dry(name);
       one.where = at("body." + name + (body.shape.radius > 0 ? ".radius_mm" : ".outline_mm"));
       outlined.bodies.push_back(std::move(one));
     }
     return outlined;
+  }
+
+  bool acts_dry(const std::string& body) const {
+    const auto has = [&](const auto& pair) {
+      return std::count(pair.second.between.begin(), pair.second.between.end(), body) > 0;
+    };
+    return std::any_of(problem_.pairs.begin(), problem_.pairs.end(), has) ||
+           std::any_of(problem_.loads.begin(), problem_.loads.end(),
+                       [&](const auto& load) { return load.second.on == body; });
   }
 
   /// Domain counter-clockwise, holes clockwise: the fluid to the left.
@@ -472,15 +483,26 @@ private:
         key = its_key;
       }
     };
-    std::vector<double> body_area(problem_.bodies.size(), 0.0);
-    for (const auto& part : overlay.parts)
-      for (std::size_t i = 0; i < body_area.size(); ++i)
-        if (part.inside[i + 1] != 0) body_area[i] += part.area;
-    std::size_t index = 0;
+    std::size_t region = 0;
     for (const auto& [name, body] : problem_.bodies) {
-      const double cells = body_area[index++] / (mean_cell_area * body.size * body.size);
+      ++region;
+      double cells = 0;
+      const BodySize size(problem_, name);
+      if (size.keys().size() == 1) { // one size: no field to look at
+        for (const auto& part : overlay.parts)
+          if (part.inside[region] != 0) cells += part.area / (mean_cell_area * body.size * body.size);
+        offer(cells, "body." + name + ".size_mm");
+      } else {
+        std::vector<OverlayPiece> pieces;
+        for (const auto& piece : overlay.pieces)
+          if (overlay.parts[piece.part].inside[region] != 0) pieces.push_back(piece);
+        const auto estimate = estimate_cells(
+            pieces, [&](const Point<2>& x) { return size.at(x); }, size.growth(),
+            static_cast<int>(size.keys().size()), 100.0 * most_cells);
+        cells = estimate.cells;
+        for (std::size_t i = 0; i < size.keys().size(); ++i) offer(estimate.by_source[i], size.keys()[i]);
+      }
       work.solid_cells += cells;
-      offer(cells, "body." + name + ".size_mm");
     }
     if (has_fluid()) {
       const FluidSize size(problem_, domain_polygon(problem_), axisymmetric_);

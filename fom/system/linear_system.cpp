@@ -89,6 +89,7 @@ void LinearSystem<dim>::collect_pattern() {
   for (int row = 0; row < size; ++row) {
     columns.clear();
     for (const auto& [matrix, factor] : terms) unite(*matrix, row, columns, buffer);
+    if (added_stiffness_) unite(*added_stiffness_, row, columns, buffer);
     if (!tangent_columns.empty() && !tangent_columns[row].empty()) {
       columns.insert(columns.end(), tangent_columns[row].begin(), tangent_columns[row].end());
       std::sort(columns.begin(), columns.end());
@@ -112,13 +113,29 @@ int LinearSystem<dim>::place_of(int row, int column) const {
 template <int dim>
 LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators,
                                 int factor_every, PhaseTimer& timer, bool iterates)
-    : disc_(disc), operators_(operators), timer_(timer), factor_every_(factor_every) {
+    : disc_(disc), operators_(operators), timer_(timer), factor_every_(factor_every), iterates_(iterates) {
   const auto scope = timer_.measure("assemble");
+  prepare();
+}
+
+template <int dim>
+void LinearSystem<dim>::prepare() {
+  const auto& disc = disc_;
+  const auto& operators = operators_;
   const auto& index = operators.ownership.petsc_index;
   const int rank = operators.rank;
   const PetscInt own = operators.ownership.first[rank + 1] - operators.ownership.first[rank];
   const PetscInt size = disc.unknowns();
 
+  for (auto* places : {&flow_places_, &tangent_places_, &identity_places_}) places->clear();
+  holder_entries_.clear();
+  holder_place_ = factored_at_ = -1;
+  factors_.reset();
+  matrix_ = {};
+  for (auto* vector : {&rhs_, &solution_, &gathered_, &residual_}) *vector = {};
+  gather_ = {};
+  solver_ = {};
+  reduced_.reset();
   collect_pattern();
   for (const auto& cell : operators.nonlinear_cells) {
     const auto unknowns = cell_unknowns(disc, cell);
@@ -177,7 +194,7 @@ LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators
   check_petsc(VecDuplicate(rhs_.get(), residual_.out()), "creating vectors");
   check_petsc(VecScatterCreateToAll(solution_.get(), gather_.out(), gathered_.out()), "creating the gather");
 
-  const bool corrects = factor_every > 1 || operators.has_nonlinear_solid || iterates;
+  const bool corrects = factor_every_ > 1 || operators.has_nonlinear_solid || iterates_;
   check_petsc(KSPCreate(operators.comm, solver_.out()), "creating the solver");
   check_petsc(KSPSetOptionsPrefix(solver_.get(), "fsi_"), "naming the solver");
   check_petsc(KSPSetType(solver_.get(), corrects ? KSPGMRES : KSPPREONLY), "choosing the solver");
@@ -260,6 +277,15 @@ bool LinearSystem<dim>::has_places_for(const SparseMatrix& matrix) const {
 }
 
 template <int dim>
+bool LinearSystem<dim>::all_have(bool on_this_rank) const {
+  int fits = on_this_rank ? 1 : 0;
+  check_petsc(
+      static_cast<PetscErrorCode>(MPI_Allreduce(MPI_IN_PLACE, &fits, 1, MPI_INT, MPI_LAND, operators_.comm)),
+      "comparing patterns");
+  return fits != 0;
+}
+
+template <int dim>
 void LinearSystem<dim>::refresh() {
   renew_constants();
   factored_at_ = -1;
@@ -267,13 +293,9 @@ void LinearSystem<dim>::refresh() {
 
 template <int dim>
 void LinearSystem<dim>::renew_constants() {
-  int fits = 1;
+  bool fits = !added_stiffness_ || has_places_for(*added_stiffness_);
   for (const auto& [matrix, factor] : constant_terms(operators_, {})) fits = fits && has_places_for(*matrix);
-  fits = fits && (!added_stiffness_ || has_places_for(*added_stiffness_));
-  check_petsc(
-      static_cast<PetscErrorCode>(MPI_Allreduce(MPI_IN_PLACE, &fits, 1, MPI_INT, MPI_LAND, operators_.comm)),
-      "comparing patterns");
-  if (!fits)
+  if (!all_have(fits))
     throw NumericsError("new operators have entries that the system matrix was not made for",
                         "a refresh of the linear system", "a new linear system for every new cut");
   stale_ = true;
@@ -282,6 +304,10 @@ void LinearSystem<dim>::renew_constants() {
 template <int dim>
 void LinearSystem<dim>::add_stiffness(const SparseMatrix* added) {
   added_stiffness_ = added;
+  if (!all_have(!added || has_places_for(*added))) {
+    const auto scope = timer_.measure("assemble");
+    prepare();
+  }
   renew_constants();
 }
 

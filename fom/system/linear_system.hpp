@@ -45,8 +45,8 @@ public:
   void refresh();
 
   /// Adds a stiffness to that of the operators (this rank's share; null: none, as at first) until another one
-  /// takes its place, from the next `assemble` on; factors are kept. It has to outlive its use. Collective;
-  /// throws as `refresh`.
+  /// takes its place, from the next `assemble` on; factors are kept where the pattern has places for it, else
+  /// pattern and symbolic factorisation are made anew. It has to outlive its use. Collective.
   void add_stiffness(const SparseMatrix* added);
 
   /// Replaces the tangents of the share's nonlinear cells and nothing else. Phase "assemble". Collective.
@@ -69,7 +69,9 @@ public:
   Mat matrix() const { return matrix_.get(); }
 
 private:
+  void prepare(); ///< the pattern and what rests on it
   void collect_pattern();
+  bool all_have(bool on_this_rank) const;
   int place_of(int row, int column) const;
   bool has_places_for(const SparseMatrix& matrix) const;
   void add_constant(const SparseMatrix& matrix, double factor);
@@ -83,6 +85,7 @@ private:
   const Operators<dim>& operators_;
   PhaseTimer& timer_;
   int factor_every_;
+  bool iterates_;
   int factored_at_ = -1;
   PetscInt most_iterations_ = 0;                  ///< that -fsi_ options allow
   double stated_tolerance_ = linear_tolerance;    ///< the same

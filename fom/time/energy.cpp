@@ -18,6 +18,7 @@ Eigen::VectorXd TimeStepper<dim>::residual(const State& state) const {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
     sum += solids.elastic + solids.viscous;
   }
+  if (skin_) sum -= skin_there_.loads + skin_there_.contact;
   return sum - loads(state.time);
 }
 
@@ -53,6 +54,7 @@ EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& 
   terms.elastic = sums[4];
   terms.scheme = sums[7];
   if (contact_) terms.contact = sums[6] - x.dot(contact_->load);
+  if (skin_) terms.contact -= x.dot(skin_there_.contact);
   if (operators_.has_nonlinear_solid) {
     const auto solids = complete_response<dim>(disc_, operators_, state.d[0], x, {}, false);
     terms.elastic += solids.energy;
@@ -68,6 +70,7 @@ EnergyTerms TimeStepper<dim>::energy(const State& state, const Eigen::VectorXd& 
     if (pressure) terms.opening -= pressure(state.time) * functional.dot(x);
   }
   terms.body = load.dot(x) - terms.opening;
+  if (skin_) terms.body += x.dot(skin_there_.loads);
   return terms;
 }
 

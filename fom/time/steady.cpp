@@ -63,6 +63,9 @@ int solve_steady(const Discretisation<dim>& disc, const Operators<dim>& operator
                      "solids with nodes that are free to move, in contact with fluid",
                      "imposed solids in a fluid, or solids in vacuo; otherwise a run in time",
                      "FsiProblem::solids");
+  if (has_skin_forces(disc.problem))
+    throw InputError("loads on skins and contact have no steady state that is computed directly",
+                     "FsiProblem::loads or FsiProblem::pairs", "a run in time", "FsiProblem");
   LinearSystem<dim> system(disc, operators, 1, timer);
   Eigen::VectorXd full = loads_at(disc, operators, 0.0);
   for (const auto& constrained : disc.constrained)

@@ -34,6 +34,21 @@ State initial_state(const Discretisation<dim>& disc) {
   return state;
 }
 
+namespace {
+
+/// Throws NumericsError where skins end deeper in their film than their pair allows.
+template <int dim>
+void check_depth(const std::vector<ContactPair>& pairs, const std::vector<PairReport<dim>>& reports) {
+  for (std::size_t p = 0; p < reports.size(); ++p)
+    if (reports[p].penetration > pairs[p].deepest)
+      throw NumericsError("skins pass into each other, [pair." + pairs[p].name + "]",
+                          std::to_string(reports[p].penetration) + " cm deep in the film, at most " +
+                              std::to_string(pairs[p].deepest),
+                          "a stiffer pair (stiffness_dyn_per_cm3) or smaller steps");
+}
+
+} // namespace
+
 std::array<double, 3> bdf_coefficients(TimeScheme scheme, int step, double ratio) {
   if (scheme == TimeScheme::bdf1 || step <= 1) return {1.0, -1.0, 0.0};
   return {(1 + 2 * ratio) / (1 + ratio), -(1 + ratio), ratio * ratio / (1 + ratio)};
@@ -51,7 +66,10 @@ TimeStepper<dim>::TimeStepper(const Discretisation<dim>& disc, const Operators<d
       timer_(timer),
       newton_(newton),
       convection_(convection),
-      system_(disc, operators, factor_every, timer, convection.tolerance > 0 || contact) {}
+      system_(disc, operators, factor_every, timer,
+              convection.tolerance > 0 || contact || has_skin_forces(disc.problem)) {
+  if (has_skin_forces(disc.problem)) skin_ = prepare_skin_forces(disc, dt);
+}
 
 template <int dim>
 void TimeStepper<dim>::set_contact(const WallContact<dim>& contact, const Eigen::VectorXd& placement) {
@@ -63,7 +81,48 @@ template <int dim>
 void TimeStepper<dim>::linearise_contact(const Eigen::VectorXd& placement) {
   contact_ = contact_force(*contact_with_, disc_, placement);
   contact_about_ = placement;
-  system_.add_stiffness(adds_contact() ? &contact_->stiffness : nullptr);
+  add_to_system();
+}
+
+template <int dim>
+void TimeStepper<dim>::linearise_skin(const SkinMotion<dim>& motion) {
+  if (!skin_) return;
+  {
+    const auto scope = timer_.measure("assemble");
+    skin_here_ = skin_response<dim>(*skin_, disc_, motion, true);
+    skin_load_ = skin_here_.loads + skin_here_.contact + skin_here_.stiffness * motion.d;
+  }
+  add_to_system();
+}
+
+template <int dim>
+void TimeStepper<dim>::add_to_system() {
+  const bool adds = operators_.rank == 0 && (contact_ || skin_load_.size() > 0);
+  if (adds && contact_ && skin_load_.size() > 0)
+    added_ = contact_->stiffness + skin_here_.stiffness;
+  else if (adds)
+    added_ = contact_ ? contact_->stiffness : skin_here_.stiffness;
+  system_.add_stiffness(adds ? &added_ : nullptr);
+}
+
+template <int dim>
+std::string TimeStepper<dim>::missed_on_skin(const Eigen::VectorXd& d, const Eigen::VectorXd& v, double t,
+                                             double rate) {
+  if (!skin_) return {};
+  skin_there_ = skin_response<dim>(*skin_, disc_, {d, v, t, rate}, false);
+  const auto free = [&](Eigen::VectorXd values) {
+    constrain_rows(disc_, values);
+    return values;
+  };
+  const Eigen::VectorXd exact = skin_there_.loads + skin_there_.contact;
+  const double left = free(exact - (skin_load_ - skin_here_.stiffness * d)).norm(),
+               rounding = 4 * std::numeric_limits<double>::epsilon() *
+                          (skin_here_.stiffness.cwiseAbs() * d.cwiseAbs()).norm();
+  if (left > newton_.tolerance * exact.norm() + rounding)
+    return "contact and loads on the skins are out of balance by " +
+           std::to_string(left / std::max(exact.norm(), std::numeric_limits<double>::min())) +
+           " of their force";
+  return {};
 }
 
 template <int dim>
@@ -79,8 +138,14 @@ double TimeStepper<dim>::distance_by_energy(const Eigen::VectorXd& x, const Eige
 }
 
 template <int dim>
-std::string TimeStepper<dim>::missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d) {
+std::string TimeStepper<dim>::missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d, double t,
+                                     double rate) {
   std::string what;
+  if (skin_) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(disc_.unknowns());
+    all.tail(d.size()) = d;
+    what = missed_on_skin(all, x, t, rate);
+  }
   if (contact_with_) {
     constexpr double accuracy = 0.02; // of the film's force
     auto balance = contact_balance(*contact_with_, contact_about_, d);
@@ -178,6 +243,13 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
     return (dt_ * x.tail(solid) - history_d.tail(solid)) / alpha[0];
   };
   const Eigen::VectorXd expected = convecting_;
+  const double rate = alpha[0] / dt_;
+  const auto linearise_skin_about = [&](const Eigen::VectorXd& x, const Eigen::VectorXd* before) {
+    if (!skin_) return;
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(disc_.unknowns());
+    d.tail(solid) = displaced(x);
+    linearise_skin({d, x, t, rate, before, state.time});
+  };
   const auto solve = [&](SystemFactors factors, const Eigen::VectorXd& right) {
     factors.mass = alpha[0] / dt_;
     factors.stiffness = dt_ / alpha[0];
@@ -185,30 +257,36 @@ void TimeStepper<dim>::advance_to(double t, State& state) {
     const auto assemble = [&] {
       system_.assemble(factors, &convecting_);
       side = right;
-      if (!contact_) return;
-      Eigen::VectorXd film = contact_->load + contact_->stiffness * (history_d / alpha[0]);
-      constrain_rows(disc_, film);
-      side += film;
+      const auto add_force = [&](const SparseMatrix& stiffness, const Eigen::VectorXd& load) {
+        Eigen::VectorXd force = load + stiffness * (history_d / alpha[0]);
+        constrain_rows(disc_, force);
+        side += force;
+      };
+      if (contact_) add_force(contact_->stiffness, contact_->load);
+      if (skin_) add_force(skin_here_.stiffness, skin_load_);
     };
     OtherTerms others;
     others.renew = [&](const Eigen::VectorXd& x) {
       if (contact_with_) linearise_contact(contact_next_);
       if (convection_.tolerance > 0) convecting_ = x;
-      if (contact_with_ || convection_.tolerance > 0) assemble();
+      linearise_skin_about(x, nullptr);
+      if (contact_with_ || skin_ || convection_.tolerance > 0) assemble();
     };
     others.missed = [&](const Eigen::VectorXd& x) {
       ++iterations_;
-      return missed(x, displaced(x));
+      return missed(x, displaced(x), t, rate);
     };
+    linearise_skin_about(expected, &state.d[0]);
     assemble();
     Eigen::VectorXd x = expected;
     solve_newton<dim>(system_, disc_, operators_, {{dt_ / alpha[0], 1.0}, -history_d / alpha[0], state.d[0]},
-                      side, newton_, step, true, x, others);
+                      side, newton_, step, !skin_, x, others);
     return x;
   };
   Eigen::VectorXd x;
   try {
     x = disc_.problem.holder ? solve_with_holder(state, alpha, t, rhs, solve) : solve({}, rhs);
+    check_depth(disc_.problem.pairs, skin_there_.reports);
   } catch (const NumericsError& error) {
     throw NumericsError(std::string("time step failed: ") + error.what(),
                         "step " + std::to_string(step) + ", t = " + std::to_string(t) + " s",

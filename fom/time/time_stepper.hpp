@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "fom/contact/skin_forces.hpp"
 #include "fom/contact/wall_contact.hpp"
 #include "fom/system/newton.hpp"
 #include "fom/time/energy_terms.hpp"
@@ -27,7 +28,8 @@ Point<dim> imposed_displacement(const Discretisation<dim>& disc, const ImposedNo
 template <int dim>
 class TimeStepper {
 public:
-  /// `contact`: whether set_contact will be called.
+  /// Loads on skins and contact pairs of the problem count from the start. `contact`: whether set_contact
+  /// will be called.
   TimeStepper(const Discretisation<dim>& disc, const Operators<dim>& operators, TimeScheme scheme, double dt,
               int factor_every, PhaseTimer& timer, const NewtonSettings& newton = {},
               const ConvectionSettings& convection = {}, bool contact = false);
@@ -57,6 +59,8 @@ public:
   int iterations() const { return iterations_; }
   /// Nodes of the skin in the film of contact, the most of the last step's iterations.
   int contact_nodes() const { return contact_nodes_; }
+  /// By contact pair of the problem, of the last step.
+  const std::vector<PairReport<dim>>& contact_reports() const { return skin_there_.reports; }
   /// Distance of the extrapolated velocity from that of the last step, as ConvectionSettings::tolerance.
   double convection_error() const { return convection_error_; }
   LinearSystem<dim>& system() { return system_; }
@@ -76,9 +80,13 @@ private:
   NewtonSettings newton_;
   Eigen::VectorXd loads(double t) const;
   void linearise_contact(const Eigen::VectorXd& placement);
+  void linearise_skin(const SkinMotion<dim>& motion);
+  /// Contact and loads on skins, stiffness on the first rank alone; about the same place as the matrix.
+  void add_to_system();
+  std::string missed_on_skin(const Eigen::VectorXd& d, const Eigen::VectorXd& v, double t, double rate);
   bool adds_contact() const { return contact_ && operators_.rank == 0; }
   /// What of convection and contact does not hold for the answer `x`, which displaces the solids to `d`.
-  std::string missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d);
+  std::string missed(const Eigen::VectorXd& x, const Eigen::VectorXd& d, double t, double rate);
   double distance_by_energy(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
 
   ConvectionSettings convection_;
@@ -90,6 +98,11 @@ private:
   std::optional<ContactForce> contact_; ///< the same on every rank; the first adds it to sums over ranks
   Eigen::VectorXd contact_about_;       ///< where it is linearised, solids' unknowns
   Eigen::VectorXd contact_next_;        ///< where it is linearised next
+  std::optional<SkinForces<dim>> skin_; ///< where the problem has any
+  Eigen::VectorXd skin_load_;           ///< linearised force: load - stiffness * d
+  SkinResponse<dim> skin_here_;         ///< where it is linearised
+  SkinResponse<dim> skin_there_;        ///< where the last iteration ended
+  SparseMatrix added_;                  ///< stiffness of walls and skins
   std::array<double, 3> alpha_{};       ///< of the last step
   Eigen::VectorXd older_x_, older_d_;   ///< levels n-1 of the last step, for the energy terms
   Eigen::VectorXd convecting_;          ///< velocity that convects in the last step
