@@ -1,6 +1,6 @@
 #include "training/emulation/fit_responses.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -106,19 +106,27 @@ ResponseScore fit_response(const RecordedResponse& recorded,
                                  {},
                                  0};
   const Eigen::MatrixXd centred = recorded.training.colwise() - response.mean;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  // Of the runs' products with each other (method of snapshots): the runs are few, their values many.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> products(centred.transpose() * centred);
+  constexpr double resolved = 1e-12; // of an eigenvalue, a square, to the largest
+  response.modes.resize(centred.rows(), 0);
   Eigen::MatrixXd left_out = response.mean.replicate(1, runs); // every run from all others
   Eigen::Index modes = 0;
   const Eigen::VectorXd noise = Eigen::VectorXd::Zero(runs);
-  for (const Eigen::Index most = std::min(most_modes, runs - 1); modes < most; ++modes) {
-    const Eigen::VectorXd coefficients = svd.singularValues()[modes] * svd.matrixV().col(modes);
+  for (Eigen::Index k = 0; k < std::min(most_modes, runs - 1); ++k) {
+    const double square = products.eigenvalues()[runs - 1 - k];
+    if (square <= resolved * products.eigenvalues()[runs - 1]) break;
+    const Eigen::VectorXd direction = products.eigenvectors().col(runs - 1 - k);
+    const Eigen::VectorXd coefficients = std::sqrt(square) * direction;
     auto process = fit_process(inputs, coefficients, noise);
     const Eigen::VectorXd told = process.leave_one_out().col(0);
-    if ((told - coefficients).squaredNorm() >= coefficients.squaredNorm()) break;
-    left_out += svd.matrixU().col(modes) * told.transpose();
+    if ((told - coefficients).squaredNorm() >= coefficients.squaredNorm()) continue;
+    response.modes.conservativeResize(Eigen::NoChange, modes + 1);
+    response.modes.col(modes) = centred * direction / std::sqrt(square);
+    left_out += response.modes.col(modes) * told.transpose();
+    ++modes;
     response.coefficients.push_back(std::move(process));
   }
-  response.modes = svd.matrixU().leftCols(modes);
 
   ResponseScore score{recorded.name, static_cast<int>(modes)};
   Misses missed, missed_held_out;

@@ -26,7 +26,7 @@ std::vector<RecordedResponse> recorded_quantities(const PreparedScene& prepared,
 std::vector<Eigen::VectorXd> recorded_values(const PreparedScene& prepared, const Scene& scene,
                                              const RunRecord& record);
 
-/// Modes of the training runs, largest first, as long as leaving out runs shows that their coefficients can
+/// Of the first modes of the training runs those of which leaving out runs shows that their coefficients can
 /// be told from the inputs: each takes away from the differences of the runs left out. `points` of training
 /// and held-out runs as the emulator's inputs. Left out, a run is missed by what the coefficients of its
 /// modes are off by, and by what lies outside of the modes; the modes themselves know it.
