@@ -41,7 +41,12 @@ const SceneKey& nearest_among(std::string_view path, const Counts& counts) {
   for (const SceneKey& key : keys_around(path)) {
     // One more than the leaves' distance, so that a key of the section at hand is preferred.
     const int elsewhere = edit_distance(leaf_of(path), leaf_of(key.path)) + 1;
-    const int distance = std::min(edit_distance(path, key.path), elsewhere);
+    int distance = std::min(edit_distance(path, key.path), elsewhere);
+    if (!key.unit.empty()) {
+      // Misspelt and without its unit: a unit is longer than most other keys are far away.
+      const auto quantity = std::string_view(key.path).substr(0, key.path.size() - key.unit.size() - 1);
+      distance = std::min(distance, edit_distance(path, quantity) + 1);
+    }
     if (distance < least && counts(key)) {
       least = distance;
       nearest = &key;
