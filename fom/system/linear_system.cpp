@@ -31,6 +31,9 @@ std::array<std::pair<const SparseMatrix*, double>, 5> constant_terms(const Opera
 /// than `worthwhile_corrections` have served their time.
 constexpr PetscInt most_corrections = 200, most_corrections_of_old = 25, worthwhile_corrections = 10;
 
+/// Directions that FGMRES keeps.
+constexpr PetscInt restart_of_blocks = 60;
+
 /// Of the right-hand side. Direct solves leave 1e-10, where cuts leave tiny parts up to 1e-5; an answer to
 /// another system is wrong by more than all of it.
 constexpr double largest_residual = 1e-2;
@@ -113,7 +116,11 @@ int LinearSystem<dim>::place_of(int row, int column) const {
 template <int dim>
 LinearSystem<dim>::LinearSystem(const Discretisation<dim>& disc, const Operators<dim>& operators,
                                 int factor_every, PhaseTimer& timer, bool iterates)
-    : disc_(disc), operators_(operators), timer_(timer), factor_every_(factor_every), iterates_(iterates) {
+    : disc_(disc),
+      operators_(operators),
+      timer_(timer),
+      factor_every_(factor_every),
+      iterates_(factor_every > 1 || operators.has_nonlinear_solid || iterates) {
   const auto scope = timer_.measure("assemble");
   prepare();
 }
@@ -135,6 +142,9 @@ void LinearSystem<dim>::prepare() {
   for (auto* vector : {&rhs_, &solution_, &gathered_, &residual_}) *vector = {};
   gather_ = {};
   solver_ = {};
+  blocks_.reset();
+  split_ = scaled_ = false;
+  row_scale_ = {};
   reduced_.reset();
   collect_pattern();
   for (const auto& cell : operators.nonlinear_cells) {
@@ -193,17 +203,64 @@ void LinearSystem<dim>::prepare() {
   check_petsc(MatCreateVecs(matrix_.get(), solution_.out(), rhs_.out()), "creating vectors");
   check_petsc(VecDuplicate(rhs_.get(), residual_.out()), "creating vectors");
   check_petsc(VecScatterCreateToAll(solution_.get(), gather_.out(), gathered_.out()), "creating the gather");
+}
 
-  const bool corrects = factor_every_ > 1 || operators.has_nonlinear_solid || iterates_;
-  check_petsc(KSPCreate(operators.comm, solver_.out()), "creating the solver");
+template <int dim>
+bool LinearSystem<dim>::wants_blocks() const {
+  std::array<char, 16> stated{};
+  PetscBool is_stated = PETSC_FALSE;
+  check_petsc(
+      PetscOptionsGetString(nullptr, nullptr, "-fsi_solver", stated.data(), stated.size(), &is_stated),
+      "reading -fsi_ options");
+  const std::string solver = is_stated ? stated.data() : "";
+  if (is_stated && solver != "direct" && solver != "blocks")
+    throw InputError("there is no such solver", solver, "direct or blocks", "option -fsi_solver");
+  if (is_stated) return solver == "blocks";
+  return dim == 3 && disc_.unknowns() > largest_factored && factors_->mass > 0;
+}
+
+template <int dim>
+void LinearSystem<dim>::set_row_scale() {
+  // So that a residual of continuity counts as the velocity that would mend it does in the rows of momentum:
+  // their ratio is that of density * size / time step, a thousand and more.
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(4); // mass and its rows, |divergence| and its rows
+  for (int node = 0; node < disc_.vertex_nodes(); ++node) {
+    const int velocity = disc_.velocity_unknown(node, 0), pressure = disc_.pressure_unknown(node);
+    if (operators_.ownership.owner[velocity] == operators_.rank) sums[1] += 1;
+    if (operators_.ownership.owner[pressure] == operators_.rank) sums[3] += 1;
+    sums[0] += factors_->mass * operators_.mass.coeff(velocity, velocity);
+    for (SparseMatrix::InnerIterator entry(operators_.physical, pressure); entry; ++entry)
+      sums[2] += std::abs(entry.value());
+  }
+  sum_over_ranks(operators_.comm, sums);
+  const double scale = sums[0] > 0 && sums[2] > 0 ? (sums[0] / sums[1]) / (sums[2] / sums[3]) : 1.0;
+  Eigen::VectorXd rows = Eigen::VectorXd::Ones(disc_.unknowns());
+  for (int node = 0; node < disc_.vertex_nodes(); ++node)
+    if (!disc_.is_constrained[disc_.pressure_unknown(node)]) rows[disc_.pressure_unknown(node)] = scale;
+  check_petsc(VecDuplicate(rhs_.get(), row_scale_.out()), "creating vectors");
+  fill(row_scale_.get(), rows);
+}
+
+template <int dim>
+void LinearSystem<dim>::make_solver() {
+  if (wants_blocks()) {
+    blocks_ = unknown_blocks(disc_, operators_);
+    set_row_scale();
+  }
+  check_petsc(KSPCreate(operators_.comm, solver_.out()), "creating the solver");
   check_petsc(KSPSetOptionsPrefix(solver_.get(), "fsi_"), "naming the solver");
-  check_petsc(KSPSetType(solver_.get(), corrects ? KSPGMRES : KSPPREONLY), "choosing the solver");
   check_petsc(KSPSetTolerances(solver_.get(), linear_tolerance, 1e-300, 1e10, most_corrections),
               "setting tolerances");
-  PC preconditioner = nullptr;
-  check_petsc(KSPGetPC(solver_.get(), &preconditioner), "getting the preconditioner");
-  check_petsc(PCSetType(preconditioner, PCLU), "choosing LU");
-  check_petsc(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS), "choosing MUMPS");
+  if (blocks_) {
+    check_petsc(KSPSetType(solver_.get(), KSPFGMRES), "choosing the solver");
+    check_petsc(KSPGMRESSetRestart(solver_.get(), restart_of_blocks), "choosing the solver");
+  } else {
+    check_petsc(KSPSetType(solver_.get(), iterates_ ? KSPGMRES : KSPPREONLY), "choosing the solver");
+    PC preconditioner = nullptr;
+    check_petsc(KSPGetPC(solver_.get(), &preconditioner), "getting the preconditioner");
+    check_petsc(PCSetType(preconditioner, PCLU), "choosing LU");
+    check_petsc(PCFactorSetMatSolverType(preconditioner, MATSOLVERMUMPS), "choosing MUMPS");
+  }
   check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
   check_petsc(KSPSetFromOptions(solver_.get()), "reading -fsi_ options");
   check_petsc(KSPGetTolerances(solver_.get(), &stated_tolerance_, nullptr, nullptr, &most_iterations_),
@@ -262,6 +319,7 @@ void LinearSystem<dim>::write(std::vector<double>& values) {
   values.resize(columns_.size());
   values.insert(values.end(), holder_entries_.begin(), holder_entries_.end());
   check_petsc(MatSetValuesCOO(matrix_.get(), values.data(), INSERT_VALUES), "filling the system matrix");
+  scaled_ = false;
 }
 
 template <int dim>
@@ -366,7 +424,15 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     return x;
   }
   const auto& index = operators_.ownership.petsc_index;
+  if (!solver_.get()) make_solver();
+  if (blocks_) tolerance = std::max(tolerance, block_tolerance);
   fill(rhs_.get(), rhs);
+  if (blocks_) {
+    check_petsc(VecPointwiseMult(rhs_.get(), rhs_.get(), row_scale_.get()), "scaling the system");
+    if (!scaled_)
+      check_petsc(MatDiagonalScale(matrix_.get(), row_scale_.get(), nullptr), "scaling the system");
+    scaled_ = true;
+  }
   bool reuse = false;
   {
     const auto scope = timer_.measure("factor");
@@ -378,16 +444,19 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
     // Without new operators KSPSetUp would leave the factorisation to KSPSolve, and its time to phase
     // "solve".
     check_petsc(KSPSetOperators(solver_.get(), matrix_.get(), matrix_.get()), "setting the operator");
+    if (blocks_ && !split_) precondition_by_blocks(solver_.get(), *blocks_);
+    split_ = blocks_.has_value();
     check_petsc(KSPSetUp(solver_.get()), "factoring the system");
     if (!reuse) factored_at_ = step;
     check_petsc(
-        KSPSetTolerances(solver_.get(), stated_tolerance_ != linear_tolerance ? stated_tolerance_ : tolerance,
-                         PETSC_DEFAULT, PETSC_DEFAULT,
-                         std::min(most_iterations_, reuse ? most_corrections_of_old : most_corrections)),
+        KSPSetTolerances(
+            solver_.get(), stated_tolerance_ != linear_tolerance ? stated_tolerance_ : tolerance,
+            PETSC_DEFAULT, PETSC_DEFAULT,
+            std::min(most_iterations_, reuse && !blocks_ ? most_corrections_of_old : most_corrections)),
         "setting tolerances");
   }
   const auto scope = timer_.measure("solve");
-  const bool guessed = guess && reuse;
+  const bool guessed = guess && (reuse || blocks_);
   check_petsc(KSPSetInitialGuessNonzero(solver_.get(), guessed ? PETSC_TRUE : PETSC_FALSE),
               "setting the guess");
   if (guessed) fill(solution_.get(), *guess);
@@ -396,6 +465,7 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
   check_petsc(KSPGetConvergedReason(solver_.get(), &reason), "asking the solver");
   PetscInt corrections = 0;
   check_petsc(KSPGetIterationNumber(solver_.get(), &corrections), "asking the solver");
+  iterations_ = static_cast<int>(corrections);
   if (!reuse)
     worn_ = false;
   else if (iteration == 1) // later ones of Newton say nothing of the next step
@@ -427,7 +497,8 @@ Eigen::VectorXd LinearSystem<dim>::solve(const Eigen::VectorXd& rhs, int step, i
         reason < 0 ? "the linear solver stopped with PETSc reason " + std::to_string(reason)
                    : std::string("the solution of the linear system is not finite"),
         "step " + std::to_string(step),
-        "a smaller time step (time.steps_per_period), a smaller stroke, or -fsi_ solver options");
+        blocks_ ? "a smaller time step, or -fsi_solver direct"
+                : "a smaller time step (time.steps_per_period), a smaller stroke, or -fsi_ solver options");
   return x;
 }
 

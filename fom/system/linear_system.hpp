@@ -1,8 +1,10 @@
-// The monolithic linear system of one step: PETSc matrix with a fixed pattern, MUMPS by default.
+// The monolithic linear system of one step: PETSc matrix with a fixed pattern, factored by MUMPS or, in space
+// from a size on, solved by FGMRES with a preconditioner by blocks.
 #pragma once
 
 #include <optional>
 
+#include "fom/system/block_preconditioner.hpp"
 #include "fom/system/handles.hpp"
 #include "fom/system/operators.hpp"
 #include "fom/system/reduced_solver.hpp"
@@ -26,6 +28,9 @@ struct SystemFactors {
 /// summed up in the row of the first, and the rows of the others say that they have its value. With a reduced
 /// space (Discretisation::reduced) every solution is that of the projected system. Options of the
 /// solver are open to the user under the prefix `-fsi_`. The symbolic factorisation is made once.
+///
+/// Time steps in space with more than `largest_factored` unknowns are solved by FGMRES on the true residual
+/// (block_preconditioner.hpp); -fsi_solver direct or blocks decides otherwise.
 template <int dim>
 class LinearSystem {
 public:
@@ -65,6 +70,15 @@ public:
 
   /// The tolerance of answers that nothing corrects afterwards.
   static constexpr double linear_tolerance = 1e-11;
+  /// The same of solutions by blocks: of the right-hand side, the rows of continuity scaled to weigh as much
+  /// as those of momentum.
+  static constexpr double block_tolerance = 1e-9;
+  /// In space: larger time steps are solved by blocks (docs/space.md tells what each takes).
+  static constexpr int largest_factored = 20000;
+
+  /// Whether the last solution was by blocks, and the iterations of GMRES or FGMRES that it took.
+  bool by_blocks() const { return blocks_.has_value(); }
+  int iterations() const { return iterations_; }
 
   Mat matrix() const { return matrix_.get(); }
 
@@ -80,14 +94,18 @@ private:
   void fill(Vec vector, const Eigen::VectorXd& values); ///< with this rank's share of them
   void write(std::vector<double>& values);              ///< with what the constrained rows say
   void check_residual(int step);
+  void make_solver();
+  bool wants_blocks() const;
+  void set_row_scale();
 
   const Discretisation<dim>& disc_;
   const Operators<dim>& operators_;
   PhaseTimer& timer_;
   int factor_every_;
-  bool iterates_;
   int factored_at_ = -1;
+  bool iterates_;                                 ///< see the constructor
   PetscInt most_iterations_ = 0;                  ///< that -fsi_ options allow
+  int iterations_ = 0;                            ///< of the last solution
   double stated_tolerance_ = linear_tolerance;    ///< the same
   bool worn_ = false;                             ///< GMRES has needed as long as new factors take
   std::vector<int> row_begin_, columns_;          ///< pattern of this rank's share, natural numbering
@@ -102,6 +120,10 @@ private:
   bool stale_ = false;                   ///< whether the operators have changed since
   std::optional<ReducedSolver> reduced_; ///< in place of PETSc's objects, which then are not made
   std::vector<double> values_;           ///< of the matrix to be projected
+  std::optional<UnknownBlocks> blocks_;  ///< where the system is solved by blocks
+  bool split_ = false;                   ///< whether the preconditioner by blocks is made
+  bool scaled_ = false;                  ///< whether the matrix is that of the scaled rows
+  PetscVec row_scale_;                   ///< of a system solved by blocks, 1 but for rows of continuity
   PetscMat matrix_;
   PetscVec rhs_, solution_, gathered_, residual_;
   PetscScatter gather_;

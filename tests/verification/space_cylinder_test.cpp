@@ -107,11 +107,5 @@ TEST(SpaceCylinder, SteadyDrag) {
   EXPECT_GT(coarse.drag - drag_1z, 3 * std::abs(fine.drag - drag_1z));
 }
 
-TEST(SpaceCylinder, DISABLED_SteadyDragFine) {
-  const auto fine = past_cylinder(20, 12);
-  EXPECT_NEAR(fine.drag / drag_1z, 1, 0.02);
-  EXPECT_NEAR(fine.drop / drop_1z, 1, 0.03);
-}
-
 } // namespace
 } // namespace undula::verification

@@ -89,15 +89,6 @@ TEST(SpaceOrders, CutAndMoved) {
 }
 TEST(SpaceOrders, Quadratic) { expect_orders({"P2-P1", false, false, false, 2}, 4, 7, quadratic); }
 TEST(SpaceOrders, QuadraticCut) { expect_orders({"cut, P2-P1", false, true, false, 2}, 5, 8, quadratic_cut); }
-TEST(SpaceOrders, DISABLED_Fine) {
-  expect_orders({"uncut"}, 12, 24, linear);
-  expect_orders({"convecting", true}, 12, 20, linear);
-  expect_orders({"cut", false, true}, 12, 24, linear);
-  expect_orders({"cut and moved by a map", false, true, true}, 12, 20, linear);
-  expect_orders({"P2-P1", false, false, false, 2}, 6, 10, quadratic);
-  expect_orders({"cut, P2-P1", false, true, false, 2}, 7, 10, quadratic_cut);
-}
-
 /// The closed form solves the equations: differences of it, and the pressure as Ethier & Steinman print it.
 TEST(SpaceOrders, TheClosedFormSolvesTheEquations) {
   const BeltramiFlow flow{0.3};
@@ -169,11 +160,6 @@ void expect_orders_in_time(int order, int coarse, int fine, const FlowErrors& le
 }
 
 TEST(SpaceOrders, InTime) { expect_orders_in_time(2, 3, 5, {1.8, 1.8, 1.8}); }
-TEST(SpaceOrders, DISABLED_InTime) {
-  expect_orders_in_time(1, 8, 16, linear);
-  expect_orders_in_time(1, 12, 24, linear);
-}
-
 /// Condition of the scaled system with a block pushed by `offset` cells off the planes of the grid.
 double condition_at(double offset, const StabilisationWeights& weights) {
   constexpr int n = 4;

@@ -158,7 +158,7 @@ void disc_modes(int rings, int count, double tolerance) {
 }
 
 TEST(SpaceSolid, VibrationsOfAClampedDisc) { disc_modes(10, 3, 0.02); }
-TEST(SpaceSolid, DISABLED_VibrationsOfAClampedDisc) { disc_modes(20, 8, 0.01); }
+TEST(SpaceSolid, DISABLED_VibrationsOfAClampedDisc) { disc_modes(14, 8, 0.015); }
 
 class SpaceLaws : public testing::TestWithParam<SolidModel> {};
 
