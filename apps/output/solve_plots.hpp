@@ -25,7 +25,8 @@ DrawnRun drawn_run(const RunDirectory& run);
 /// Draws into its folder: speed.png and pressure.png (the state, with the displaced solids),
 /// speed_gap.png (the same near the membrane), membrane.png (at eight phases of the last complete period) and
 /// flow.png (over time), holder.png (where a voltage drives it); of a scene that states its problem the first
-/// three. Without gnuplot there is a warning and the scripts are kept.
+/// three, where it has a fluid, and stress.png (von Mises' stress on the displaced solids). Without gnuplot
+/// there is a warning and the scripts are kept.
 void plot_run(const DrawnRun& run, const Scene& scene, const State& state);
 
 } // namespace undula::apps

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/mesh/quadrature.hpp"
+#include "rom/base/error.hpp"
 
 namespace undula::fom {
 
@@ -401,25 +402,36 @@ double mean_length(const std::vector<SkinEdge<2>>& skin) {
 template <int dim>
 SkinForces<dim> prepare_skin_forces(const Discretisation<dim>& disc, double step) {
   SkinForces<dim> forces;
-  forces.axisymmetric = disc.problem.space == Space::axisymmetric;
-  forces.step = step;
-  forces.skin = skins_of(disc);
-  // Of one body the other side of a thin wall is near, and no contact.
-  constexpr double of_itself = 0.5, of_another = 4;
-  for (const auto& pair : disc.problem.pairs)
-    forces.reach.push_back((pair.solid == pair.other_solid ? of_itself : of_another) *
-                           mean_length(forces.skin[pair.solid]));
+  if constexpr (dim == 2) {
+    forces.axisymmetric = disc.problem.space == Space::axisymmetric;
+    forces.step = step;
+    forces.skin = skins_of(disc);
+    // Of one body the other side of a thin wall is near, and no contact.
+    constexpr double of_itself = 0.5, of_another = 4;
+    for (const auto& pair : disc.problem.pairs)
+      forces.reach.push_back((pair.solid == pair.other_solid ? of_itself : of_another) *
+                             mean_length(forces.skin[pair.solid]));
+  } else if (has_skin_forces(disc.problem)) {
+    throw InputError("loads on skins and contact are not computed in three dimensions",
+                     "FsiProblem::loads or FsiProblem::pairs", "plane or axisymmetric space", "FsiProblem");
+  }
   return forces;
 }
 
 template <int dim>
 SkinResponse<dim> skin_response(const SkinForces<dim>& forces, const Discretisation<dim>& disc,
                                 const SkinMotion<dim>& motion, bool derive) {
-  return Assembler(forces, disc, motion, derive).run();
+  if constexpr (dim == 2)
+    return Assembler(forces, disc, motion, derive).run();
+  else
+    return {};
 }
 
 template SkinForces<2> prepare_skin_forces(const Discretisation<2>&, double);
+template SkinForces<3> prepare_skin_forces(const Discretisation<3>&, double);
 template SkinResponse<2> skin_response(const SkinForces<2>&, const Discretisation<2>&, const SkinMotion<2>&,
+                                       bool);
+template SkinResponse<3> skin_response(const SkinForces<3>&, const Discretisation<3>&, const SkinMotion<3>&,
                                        bool);
 
 } // namespace undula::fom

@@ -73,4 +73,6 @@ std::vector<double> von_mises_stress(const Discretisation<dim>& disc, const Eige
 
 template std::vector<double> von_mises_stress(const Discretisation<2>&, const Eigen::VectorXd&);
 
+template std::vector<double> von_mises_stress(const Discretisation<3>&, const Eigen::VectorXd&);
+
 } // namespace undula::fom

@@ -39,10 +39,10 @@ struct OutlinedProblem {
 /// and out; 0 where nothing does.
 using NetInflow = std::function<double(const std::vector<int>& segments)>;
 
-/// Refuses (InputError) bodies that lie wholly outside of the fluid without a reason, or over one another in it (in vacuo:
-/// anywhere), no fluid left between them, openings and inflows that they cover, and parts of the fluid that
-/// are closed all around by walls and still bodies although fluid flows into them, or beside others, where
-/// nothing says their pressure. Returns the overlay of the fluid (region 0) and the bodies.
+/// Refuses (InputError) bodies that lie wholly outside of the fluid without a reason, or over one another in
+/// it (in vacuo: anywhere), no fluid left between them, openings and inflows that they cover, and parts of
+/// the fluid that are closed all around by walls and still bodies although fluid flows into them, or beside
+/// others, where nothing says their pressure. Returns the overlay of the fluid (region 0) and the bodies.
 PlaneOverlay check_outlines(const OutlinedProblem& problem, const NetInflow& net_inflow);
 
 } // namespace undula::fom

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 #include "tests/verification/support/run_scene.hpp"
 
@@ -86,8 +87,29 @@ TEST(SkinContact, AHoseThatIsClosedDoesNotPassThroughItself) {
   std::printf("%d unknowns: bore at least %.4f mm, bore %.1f, plate %.1f N/m, penetration %.4f mm\n",
               run.unknowns, least, bore.back(), upper.back(), run.last("bore_penetration_mm"));
   EXPECT_GT(bore.back(), 1);
-  EXPECT_GT(least, -0.02); // mm; without the pair the walls pass by more than half a millimetre
+  EXPECT_GT(least, -0.02); // mm; without the pair the walls pass by 0.14 mm
   EXPECT_EQ(bore[10], 0);
+}
+
+/// Pairs couple unknowns of several ranks: the pattern of the matrix grows on all of them.
+TEST(SkinContactMpi, RanksTogetherFindWhatOneFinds) {
+  for (const auto& [name, end] :
+       {std::pair("two_blocks", "time.end_s=0.1"), {"pressed_channel", "time.end_s=0.04"}}) {
+    const auto alone = run_test_scene(name, {end});
+    PhaseTimer timer;
+    const auto level = prepare_level(alone.scene, MPI_COMM_WORLD, timer);
+    const RowLayout rows = level->view(alone.scene).rows;
+    State state = level->initial_state();
+    std::vector<double> last;
+    march(*level, alone.scene, state, timer,
+          [&](const State&, const Observation& seen) { last = observation_row(seen, rows); });
+    for (std::size_t c = 0; c < last.size(); ++c) {
+      const std::string& column = alone.table.columns[c];
+      if (!column.ends_with("_mm") && !column.ends_with("_N_per_m")) continue;
+      const double expected = alone.table.value(alone.table.rows() - 1, c);
+      EXPECT_NEAR(last[c], expected, 1e-6 * std::abs(expected) + 1e-9) << name << ", " << column;
+    }
+  }
 }
 
 } // namespace
