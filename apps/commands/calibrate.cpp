@@ -6,7 +6,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -31,6 +30,7 @@
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
 #include "training/calibration/uncertainty.hpp"
+#include "training/sampling/key_range.hpp"
 
 namespace undula::apps {
 namespace {
@@ -51,38 +51,30 @@ struct CalibrateOptions {
   std::vector<std::string> petsc;
 };
 
-bool read_all(std::string_view text, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return !text.empty() && error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-}
-
 /// "geometry.rim_gap_scale=0.8:1.2"
 FreeKey parse_free_key(const std::string& text) {
-  const auto equals = text.find('=');
-  const auto colon = text.find(':', equals == std::string::npos ? 0 : equals);
-  FreeKey key;
-  if (equals == std::string::npos || equals == 0 || colon == std::string::npos ||
-      !read_all(std::string_view(text).substr(equals + 1, colon - equals - 1), key.low) ||
-      !read_all(std::string_view(text).substr(colon + 1), key.high)) {
+  const auto range = read_key_range(text);
+  if (!range) {
     throw InputError("a free key cannot be read", '"' + text + '"',
                      "section.key=low:high, for instance operating_point.stroke_scale=0.95:1.05", "--free");
   }
-  key.key = text.substr(0, equals);
+  FreeKey key;
+  key.key = range->key, key.low = range->low, key.high = range->high;
   return key;
 }
 
 /// "actuator.suspension_N_per_mm=10:40:7"
 ProfileRequest parse_profile(const std::string& text) {
   const auto colon = text.rfind(':');
-  double count = 0;
-  if (colon == std::string::npos || !read_all(std::string_view(text).substr(colon + 1), count) || count < 2 ||
-      count > 1000 || count != std::floor(count)) {
+  const auto count =
+      colon == std::string::npos ? std::nullopt : read_finite(std::string_view(text).substr(colon + 1));
+  if (!count || *count < 2 || *count > 1000 || *count != std::floor(*count)) {
     throw InputError("a profile cannot be read", '"' + text + '"',
                      "section.key=low:high:values, for instance actuator.suspension_N_per_mm=10:40:7",
                      "--profile");
   }
   const FreeKey range = parse_free_key(text.substr(0, colon));
-  return {range.key, even_heads(range.low, range.high, static_cast<int>(count))};
+  return {range.key, even_heads(range.low, range.high, static_cast<int>(*count))};
 }
 
 /// A profile of a key that is fitted, with others beside it.

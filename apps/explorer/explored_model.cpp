@@ -72,6 +72,17 @@ const std::string& ExploredModel::told_scene() const {
   return found == provenance.end() ? nothing : found->second;
 }
 
+std::string ExploredModel::no_period() const {
+  if (!source_.emulator) {
+    return "";
+  }
+  if (!source_.emulator->responses.empty()) {
+    return "This page does not draw the period of an emulator: undula period does. Its inflow is not known.";
+  }
+  return "An emulator interpolates means of runs: how membrane and flow go in time is not known to it. A "
+         "projected model knows.";
+}
+
 Json ExploredModel::description() const {
   const auto b = box();
   return {
@@ -84,10 +95,7 @@ Json ExploredModel::description() const {
                              b.stroke_high_mm)},
         {"head", range_json("head", "mmHg", b.head_low_mmHg, b.head_high_mmHg)}}},
       {"fluid", fluid_json(told_scene())},
-      {"no_period", source_.emulator
-                        ? "An emulator interpolates means of runs: how membrane and flow go in time "
-                          "is not known to it. A projected model knows."
-                        : ""},
+      {"no_period", no_period()},
       {"no_scene", told_scene().empty() ? "The model does not tell the scene that it was made from." : ""}};
 }
 

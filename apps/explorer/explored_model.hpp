@@ -44,6 +44,7 @@ public:
 
 private:
   [[nodiscard]] const std::string& told_scene() const; ///< TOML; empty: not told
+  [[nodiscard]] std::string no_period() const;         ///< why; empty: there is one
 
   LevelSource source_;
   std::unique_ptr<Level> level_;

@@ -25,9 +25,18 @@ rom::EmulatorPoint emulator_point(const rom::Emulator& emulator, const Operating
   return point;
 }
 
+namespace {
+
+/// Force per volt of a scene in parts of that of the runs; 1 where the emulator does not know theirs.
+double force_scale(const rom::Emulator& emulator, const Scene& scene) {
+  return emulator.force_N_per_V > 0 ? surface_value(scene, force_key) / emulator.force_N_per_V : 1;
+}
+
+} // namespace
+
 rom::EmulatorPoint emulator_point(const rom::Emulator& emulator, const Scene& scene) {
   auto point = emulator_point(emulator, scene.operating_point);
-  if (emulator.force_N_per_V > 0) point[1] *= surface_value(scene, force_key) / emulator.force_N_per_V;
+  point[1] *= force_scale(emulator, scene);
   for (std::size_t i = rom::point_inputs; i < point.size(); ++i)
     point[i] = surface_value(scene, emulator.inputs[i].name);
   return point;
@@ -47,7 +56,7 @@ std::vector<CurvePoint> EmulatedLevel::curve(const Scene& scene, std::span<const
   const auto at = emulator_point(emulator_, scene);
   auto points = rom::emulated_curve(emulator_, at[0], at[1], heads_mmHg, on_point,
                                     std::span(at).subspan(rom::point_inputs));
-  if (at[1] == emulator_point(emulator_, scene.operating_point)[1]) return points;
+  if (force_scale(emulator_, scene) == 1) return points;
   // The same force from another voltage: the coil's own power is not known.
   for (auto& point : points) {
     point.electrical_power_mW = std::numeric_limits<double>::quiet_NaN();

@@ -17,12 +17,6 @@
 namespace undula::rom {
 namespace {
 
-bool inside(double value, double low, double high) {
-  // A bound that went through text or unit conversion still counts as inside.
-  const double slack = 1e-9 * std::max(std::abs(low), std::abs(high));
-  return value >= low - slack && value <= high + slack;
-}
-
 void set_envelope(const Operators& operators, const PeriodicSolver& solver, double stroke_cm,
                   const PeriodicState& state, HqPoint& point) {
   const Eigen::MatrixXd axial = axial_displacement(operators, solver, stroke_cm, state);
@@ -50,17 +44,20 @@ void check_operating_point(double frequency_Hz, double stroke_mm, std::span<cons
 std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double drive,
                                               std::span<const double> heads_mmHg, const DriveUnit& unit) {
   std::vector<std::string> lines;
-  const auto check = [&](const char* name, double value, double low, double high, const char* in) {
-    if (inside(value, low, high)) return;
-    std::ostringstream text;
-    text << name << " " << value << " " << in << " is outside the trained " << low << " to " << high << " "
-         << in;
-    lines.push_back(text.str());
-  };
-  check("frequency", frequency_Hz, box.frequency_low_Hz, box.frequency_high_Hz, "Hz");
-  check(unit.name, drive, box.stroke_low_mm, box.stroke_high_mm, unit.unit);
-  for (const double head : heads_mmHg) check("head", head, box.head_low_mmHg, box.head_high_mmHg, "mmHg");
+  tell_outside("frequency", "Hz", frequency_Hz, box.frequency_low_Hz, box.frequency_high_Hz, lines);
+  tell_outside(unit.name, unit.unit, drive, box.stroke_low_mm, box.stroke_high_mm, lines);
+  for (const double head : heads_mmHg)
+    tell_outside("head", "mmHg", head, box.head_low_mmHg, box.head_high_mmHg, lines);
   return lines;
+}
+
+void tell_outside(const std::string& name, const std::string& unit, double value, double low, double high,
+                  std::vector<std::string>& lines) {
+  if (parts_outside(value, low, high) == 0) return;
+  std::ostringstream text;
+  text << name << " " << value << " " << unit << " is outside the trained " << low << " to " << high << " "
+       << unit;
+  lines.push_back(text.str());
 }
 
 std::vector<HqPoint> hq_curve(const Model& model, double frequency_Hz, double stroke_mm,

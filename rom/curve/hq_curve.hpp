@@ -56,8 +56,11 @@ struct DriveUnit {
   const char* unit = "mm";
 };
 
-/// One line for each parameter that leaves the training box ("frequency 150 Hz is outside the trained 80 to
-/// 140 Hz"). Empty: all inside.
+/// Adds a line where a value leaves a trained range ("frequency 150 Hz is outside the trained 80 to 140 Hz").
+void tell_outside(const std::string& name, const std::string& unit, double value, double low, double high,
+                  std::vector<std::string>& lines);
+
+/// One line for each parameter that leaves the training box (tell_outside). Empty: all inside.
 std::vector<std::string> outside_training_box(const TrainingBox& box, double frequency_Hz, double drive,
                                               std::span<const double> heads_mmHg, const DriveUnit& unit = {});
 

@@ -7,7 +7,6 @@
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
 #include "rom/base/units.hpp"
-#include "rom/curve/error_estimate.hpp"
 #include "rom/curve/hq_curve.hpp"
 #include "rom/emulator/emulated_quantities.hpp"
 
@@ -73,10 +72,7 @@ std::vector<std::string> outside_training_box(const Emulator& emulator, double f
                                     {input.name.c_str(), input.unit.c_str()});
   const auto others = further_inputs(emulator);
   for (std::size_t i = 0; i < std::min(further.size(), others.size()); ++i)
-    if (parts_outside(further[i], others[i].low, others[i].high) > 0)
-      lines.push_back(others[i].name + " " + plain_number(further[i]) + " " + others[i].unit +
-                      " is outside the trained " + plain_number(others[i].low) + " to " +
-                      plain_number(others[i].high) + " " + others[i].unit);
+    tell_outside(others[i].name, others[i].unit, further[i], others[i].low, others[i].high, lines);
   return lines;
 }
 

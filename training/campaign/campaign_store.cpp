@@ -149,8 +149,8 @@ std::vector<OperatingPoint> CampaignStore::recorded_points(std::vector<std::stri
   return points;
 }
 
-RunRecord CampaignStore::load(const OperatingPoint& point) const {
-  return read_run_record(record_file(point), records_.hash(), point);
+RunRecord CampaignStore::load(const OperatingPoint& point, RecordParts parts) const {
+  return read_run_record(record_file(point), records_.hash(), point, parts);
 }
 
 } // namespace undula::training

@@ -41,6 +41,9 @@ struct RunRecord {
   std::map<std::string, double> seconds;      ///< wall time by phase, "total" among them
 };
 
+/// What is read of a record: snapshots are nearly all of it.
+enum class RecordParts { all, without_snapshots };
+
 /// Stamp of a campaign: the scene without its operating point, but with the settings that decide what is
 /// recorded.
 SceneStamp stamp_campaign(const Scene& scene);
@@ -89,7 +92,7 @@ public:
   void store(const Claim& claim, const RunRecord& record) const;
 
   /// Throws InputError if there is no whole record of the point.
-  RunRecord load(const OperatingPoint& point) const;
+  RunRecord load(const OperatingPoint& point, RecordParts parts = RecordParts::all) const;
 
   /// Points of all whole records in the folder, in the order of their names. What is wrong with a record that
   /// is none is appended to `damaged`.

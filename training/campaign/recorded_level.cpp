@@ -36,7 +36,7 @@ std::vector<CurvePoint> RecordedLevel::curve(const Scene& scene, std::span<const
                          "--campaign");
       ++runs_;
     }
-    points.push_back(curve_point_of(scene_, store_.load(at)));
+    points.push_back(curve_point_of(scene_, store_.load(at, RecordParts::without_snapshots)));
     if (on_point) on_point();
   }
   return points;

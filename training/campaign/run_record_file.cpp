@@ -160,14 +160,15 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
 }
 
 RunRecord read_run_record(const std::filesystem::path& path, const std::string& campaign_hash,
-                          const OperatingPoint& point) {
+                          const OperatingPoint& point, RecordParts parts) {
   const auto file = open_checked(path, campaign_hash, point);
   RunRecord record;
   record.point = point;
   record.state = state_of(file.read_attribute<std::string>("/", "state"), path);
   record.reason = file.read_text("reason");
-  record.times = file.read<double>("times");
-  for (const auto& name : file.children("snapshots")) {
+  if (parts == RecordParts::all) record.times = file.read<double>("times");
+  for (const auto& name :
+       parts == RecordParts::all ? file.children("snapshots") : std::vector<std::string>{}) {
     const auto dataset = "snapshots/" + name;
     const auto extents = file.extents(dataset);
     if (extents.size() != 2)

@@ -15,7 +15,7 @@ void write_run_record(const RunRecord& record, const std::string& campaign_hash,
 /// Throws InputError for a missing, damaged or foreign file, for one of another campaign and for a record of
 /// another point or whose shapes disagree.
 RunRecord read_run_record(const std::filesystem::path& file, const std::string& campaign_hash,
-                          const OperatingPoint& point);
+                          const OperatingPoint& point, RecordParts parts = RecordParts::all);
 
 /// Checks everything but the shapes of the snapshots. Throws as read_run_record does.
 void check_run_record(const std::filesystem::path& file, const std::string& campaign_hash,

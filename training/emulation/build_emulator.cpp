@@ -98,7 +98,7 @@ BuiltEmulator build_emulator(const Scene& scene, const SamplingPlan& plan, const
   const auto collect = [&](const std::vector<OperatingPoint>& points, bool held) {
     for (const auto& at : points) {
       std::string why;
-      auto known = known_run(emulator, scene, store.load(at), why);
+      auto known = known_run(emulator, scene, store.load(at, RecordParts::without_snapshots), why);
       if (known) {
         known->run.held_out = held;
         (held ? held_out : training).push_back(std::move(*known));

@@ -1,6 +1,6 @@
 #include "training/emulation/fit_responses.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,13 +13,14 @@
 #include "training/campaign/moving_snapshots.hpp"
 #include "training/emulation/fit_process.hpp"
 #include "training/emulation/quantile.hpp"
+#include "training/reduction/pod.hpp"
 #include "training/sampling/trainable_scene.hpp"
 
 namespace undula::training {
 namespace {
 
 constexpr int steps_per_phase = 2;
-constexpr Eigen::Index most_modes = 12;
+constexpr int most_modes = 12;
 
 /// Values of a record at the phases of its last period; `at` gives those of a snapshot.
 template <typename AtSnapshot>
@@ -46,6 +47,15 @@ Eigen::VectorXd envelope(const Eigen::VectorXd& values, Eigen::Index places) {
   Eigen::VectorXd result(2 * places);
   result << by_phase.rowwise().minCoeff(), by_phase.rowwise().maxCoeff();
   return result;
+}
+
+/// The first modes of what runs differ by; none where they do not.
+Eigen::MatrixXd shared_modes(const Eigen::MatrixXd& centred) {
+  if (centred.norm() == 0) return Eigen::MatrixXd(centred.rows(), 0);
+  Eigen::SparseMatrix<double> identity(centred.rows(), centred.rows());
+  identity.setIdentity();
+  const int most = std::min(most_modes, static_cast<int>(centred.cols()) - 1); // the mean is one of them
+  return pod(centred, identity, {most, 0}).modes;
 }
 
 /// Norm of the differences over that of the runs, of the values and of their envelopes.
@@ -106,24 +116,19 @@ ResponseScore fit_response(const RecordedResponse& recorded,
                                  {},
                                  0};
   const Eigen::MatrixXd centred = recorded.training.colwise() - response.mean;
-  // Of the runs' products with each other (method of snapshots): the runs are few, their values many.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> products(centred.transpose() * centred);
-  constexpr double resolved = 1e-12; // of an eigenvalue, a square, to the largest
   response.modes.resize(centred.rows(), 0);
   Eigen::MatrixXd left_out = response.mean.replicate(1, runs); // every run from all others
   Eigen::Index modes = 0;
   const Eigen::VectorXd noise = Eigen::VectorXd::Zero(runs);
-  for (Eigen::Index k = 0; k < std::min(most_modes, runs - 1); ++k) {
-    const double square = products.eigenvalues()[runs - 1 - k];
-    if (square <= resolved * products.eigenvalues()[runs - 1]) break;
-    const Eigen::VectorXd direction = products.eigenvectors().col(runs - 1 - k);
-    const Eigen::VectorXd coefficients = std::sqrt(square) * direction;
+  const Eigen::MatrixXd shared = shared_modes(centred);
+  for (const auto mode : shared.colwise()) {
+    const Eigen::VectorXd coefficients = centred.transpose() * mode;
     auto process = fit_process(inputs, coefficients, noise);
     const Eigen::VectorXd told = process.leave_one_out().col(0);
     if ((told - coefficients).squaredNorm() >= coefficients.squaredNorm()) continue;
     response.modes.conservativeResize(Eigen::NoChange, modes + 1);
-    response.modes.col(modes) = centred * direction / std::sqrt(square);
-    left_out += response.modes.col(modes) * told.transpose();
+    response.modes.col(modes) = mode;
+    left_out += mode * told.transpose();
     ++modes;
     response.coefficients.push_back(std::move(process));
   }

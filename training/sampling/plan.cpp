@@ -164,12 +164,13 @@ SamplingPlan plan_samples(const TrainingPlan& plan, const OperatingPoint& like,
                           std::span<const VariedKey> varied) {
   const Box box = checked_box(plan, like, varied);
   auto training = corners(box);
+  const auto corner_count = training.size();
   const auto halton = box.halton(7);
   for (int k = 1; k <= plan.training_points; ++k) training.push_back(box.without_fixed(halton(k)));
   const auto held_out = farthest_points(box, training, plan.held_out_points);
   SamplingPlan samples{in_units(box, training), in_units(box, held_out)};
   // The record of a corner is that of a campaign without varied keys.
-  for (std::size_t k = 0; k < corners(box).size(); ++k) samples.training[k].varied.clear();
+  for (std::size_t k = 0; k < corner_count; ++k) samples.training[k].varied.clear();
   return samples;
 }
 

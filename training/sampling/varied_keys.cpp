@@ -1,36 +1,24 @@
 #include "training/sampling/varied_keys.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <string_view>
 
 #include "fom/scene/scene_key_search.hpp"
 #include "fom/scene/scene_value.hpp"
 #include "rom/base/error.hpp"
 #include "rom/base/text_file.hpp"
+#include "training/sampling/key_range.hpp"
 
 namespace undula::training {
 namespace {
 
 constexpr const char* where = "training.vary";
 
-bool read_whole(std::string_view text, double& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return !text.empty() && error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-}
-
 VariedKey parsed(const std::string& text) {
-  const auto equals = text.find('=');
-  const auto colon = text.find(':', equals == std::string::npos ? 0 : equals);
-  VariedKey key;
-  if (equals == std::string::npos || equals == 0 || colon == std::string::npos ||
-      !read_whole(std::string_view(text).substr(equals + 1, colon - equals - 1), key.low) ||
-      !read_whole(std::string_view(text).substr(colon + 1), key.high))
+  const auto range = read_key_range(text);
+  if (!range)
     throw InputError("a varied key cannot be read", '"' + text + '"',
                      "section.key=low:high, for instance membrane.young_dyn_per_cm2=1.5e7:1.9e7", where);
-  key.key = text.substr(0, equals);
-  return key;
+  return {range->key, {}, range->low, range->high};
 }
 
 } // namespace
